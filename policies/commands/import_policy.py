@@ -21,14 +21,15 @@ app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions
 def main(
     zip_: Annotated[Path, typer.Argument(metavar="ZIP", help="What `model.save` wrote.")],
     folder: Annotated[Path, typer.Argument(help="Folder to write.")],
-    environment: Annotated[str, typer.Option(help="Id of the environment of the training.")],
+    environment: Annotated[str, typer.Option(help="Task or id of the environment of the training.")],
     set_: Annotated[
         list[str] | None, typer.Option("--set", metavar="NAME=VALUE", help="Arguments of that environment.")
     ] = None,
 ) -> None:
     """Write a policy's folder from the tensors of a zip (extra `train`)."""
     from policies.learned.sb3_zip import import_zip
+    from slipgym.tasks import find
 
     with usage_errors(ValueError, TypeError, OSError):
-        import_zip(zip_, folder, environment, environment_arguments(set_ or []))
+        import_zip(zip_, folder, find(environment).id, environment_arguments(set_ or []))
     typer.echo(f"policy: {folder}")

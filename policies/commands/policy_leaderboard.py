@@ -38,7 +38,13 @@ def main(
     policy: Annotated[
         list[str] | None, typer.Option(help="A policy to enter: module:class or a folder; repeatable.")
     ] = None,
-    friction_source: Annotated[str, typer.Option(help="Of the entered policies.")] = "estimated",
+    friction_source: Annotated[
+        str | None,
+        typer.Option(
+            help="Of the entered policies.  [default: that of a policy's file, else estimated]",
+            show_default=False,
+        ),
+    ] = None,
     imitation: Annotated[Path | None, typer.Option(help="Folder of the runs of slipgym imitate.")] = None,
     worlds: Annotated[
         bool, typer.Option("--worlds", help="Instead: each policy in other worlds, such as PyBullet.")
@@ -68,7 +74,11 @@ def main(
         if worlds and engine != "planar":
             raise ValueError(f"--engine {engine}: --worlds plays on both engines")
         engine = resolved(one_of("engine", engine, ENGINES))
-        mine = entries.entered(policy or [], one_of("friction source", friction_source, FRICTION_SOURCES))
+        for task in tasks or TASKS:
+            find(task)  # one of the user's own is registered, before a policy asks for it
+        if friction_source is not None:
+            one_of("friction source", friction_source, FRICTION_SOURCES)
+        mine = entries.entered(policy or [], friction_source)
         for task in tasks or TASKS:
             for each in mine:  # one for another task, whose observations may be as long, is refused
                 environment_of(each.name, each.policy, task)

@@ -20,6 +20,7 @@ Examples:\n
 A configuration is a YAML file; configs/training/ holds those that come with slipgym, and docs/training.md
 says what their keys mean and what a run writes.
 """
+_RUNS = Path("runs")
 app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
 
 
@@ -52,7 +53,7 @@ def main(
     ray: Annotated[str, typer.Option(help="Run on Ray: local, or a cluster's address.")] = "",
     sweep: Annotated[int, typer.Option(min=0, help="Search hyperparameters with as many runs.")] = 0,
     resume: Annotated[Path | None, typer.Option(help="Folder of a run or study to go on with.")] = None,
-    output: Annotated[Path, typer.Option(help="Folder for the run's own folder.")] = Path("runs"),
+    output: Annotated[Path, typer.Option(help="Folder for the run's own folder.")] = _RUNS,
 ) -> None:
     """Train policies, one run for each seed and friction source; each keeps checkpoints and its curve."""
     from policies.training import files
@@ -67,7 +68,7 @@ def main(
     with usage_errors(ValueError, OSError, extra="train"):
         if resume is not None:
             others = {"a configuration": configuration, "--seeds": seeds, "--friction-source": sources}
-            others |= {"--set": sets, "--sweep": sweep}
+            others |= {"--set": sets, "--sweep": sweep, "--output": output if output != _RUNS else None}
             others |= {f"--{name.rpartition('.')[2]}": value for name, value in options.items()}
             from policies.training.run_set import resumed
 
@@ -77,9 +78,11 @@ def main(
             from policies.training.run_set import begun
 
             path, work = begun(config, seeds or [], sources, sweep, output, jobs, ray)
-            typer.echo(f"If it is interrupted: slipgym train --resume {path}")
+            if not sweep:
+                typer.echo(f"If it is interrupted: slipgym train --resume {path}")
     try:
         typer.echo(work())
-    except (ValueError, OSError) as error:
-        typer.echo(f"error: {error}; what was trained so far is in the run's last checkpoint", err=True)
+    except (ValueError, OSError, FloatingPointError) as error:
+        kept = any((resume or path).rglob("*.checkpoint"))
+        typer.echo(f"error: {error}" + kept * "; what was trained so far is in the last checkpoint", err=True)
         raise typer.Exit(1) from error

@@ -17,6 +17,7 @@ from policies.learned.description import TRAINING, WEIGHTS, Description, Environ
 from policies.learned.extract import ALGORITHMS, acting_tensors, algorithm_of, array, critic_of, network_of
 from policies.learned.fitting import column_of
 from policies.versions import versions
+from slipgym.config.load import content, randomization_content
 
 
 def save(
@@ -141,12 +142,16 @@ def described(environment: str, arguments: Mapping[str, Any]) -> dict[str, Any]:
         ValueError: The id or an argument is not allowed.
     """
     engine = {} if find_spec("pybullet") else {"engine": "planar"}  # the columns are the same
+    readers = {"config": content, "randomization": randomization_content}  # a policy's file names no others
+    arguments = {
+        name: readers[name](value) if name in readers else value for name, value in arguments.items()
+    }
     given = {"disable_env_checker": True, **engine, **arguments}
     env: Any = gym.make(f"slipgym:{environment}", **given).unwrapped
     with env:
         values = {
             "id": environment,
-            "arguments": dict(arguments),
+            "arguments": arguments,
             "rate": float(env.metadata["render_fps"]),
             "history": int(arguments.get("history", 0)),
             "observation": [column_of(column) for column in env.columns],

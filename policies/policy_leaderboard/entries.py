@@ -85,13 +85,21 @@ def remembering(task: str, arguments: Mapping[str, Any], episodes: int) -> Membe
     return strongest(task, members, arguments, _selection(episodes))
 
 
+def source_of(policy: Policy) -> str:
+    """The friction source that a policy asks for or, if it is of a file, was trained with; else estimates."""
+    arguments = registry.modes(policy)
+    if isinstance(policy, LearnedPolicy):
+        arguments = policy.description.environment.arguments
+    return str(arguments.get("friction_source", "estimated"))
+
+
 def learned(key: str, kinds: Mapping[str, str] = LEARNED) -> list[Member]:
     """The policies of some kinds, as `LEARNED` has them, that come with slipgym for the task of a key."""
     members, shipped = [], pretrained.folders()
     for ending, called in kinds.items():
         if (name := f"{key}_{ending}") in shipped:
             policy = LearnedPolicy(shipped[name])
-            source = str(policy.description.environment.arguments.get("friction_source", "estimated"))
+            source = source_of(policy)
             members.append(member(f"{called}, {source}", policy, source))
     return members
 
@@ -144,8 +152,10 @@ def imitated(task: str, folder: Path) -> list[Member]:
     return members
 
 
-def entered(names: Sequence[str], source: str) -> list[Member]:
+def entered(names: Sequence[str], source: str | None = None) -> list[Member]:
     """Policies that a user enters, as `policies.load` takes them; their names end with their friction source.
+
+    None stands for that of `source_of`; a policy that asks for a source always has it.
 
     Raises:
         FileNotFoundError: There is no such policy.
@@ -154,7 +164,7 @@ def entered(names: Sequence[str], source: str) -> list[Member]:
     members = []
     for name in names:
         policy = registry.load(name)
-        own = str(registry.modes(policy).get("friction_source", source))
+        own = str(registry.modes(policy).get("friction_source", source or source_of(policy)))
         members.append(member(f"{name}, {own}", policy, own))
     return members
 

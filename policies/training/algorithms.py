@@ -9,7 +9,12 @@ from pydantic import BeforeValidator, Field, model_validator
 
 from slipgym.config.base import Count, Frozen, NonNegative, Positive, as_tuple
 
-Layers = Annotated[tuple[Count, ...], BeforeValidator(as_tuple), Field(min_length=1)]
+Layers = Annotated[
+    tuple[Annotated[Count, Field(le=8192)], ...],
+    BeforeValidator(as_tuple),
+    Field(min_length=1, max_length=16),
+]
+"""As wide and as many as the file of a policy holds."""
 Share = Annotated[float, Field(ge=0, le=1)]
 
 

@@ -76,6 +76,7 @@ class TrainingCallback(BaseCallback):
 
     def _on_rollout_start(self) -> None:
         steps = self.model.num_timesteps
+        learners.check_finite(self.model)
         if steps >= self._config.budget:
             self.ended = "budget"
         if self.ended or steps >= self._next_evaluation:
@@ -85,6 +86,8 @@ class TrainingCallback(BaseCallback):
             self._next_checkpoint = (steps // (every := self._config.checkpoints.every) + 1) * every
             state = {"record": self.get_state(), "learner": learners.get_state(self.model)}
             checkpoints.save(self._path, steps, state, self._config.checkpoints.keep)
+        if getattr(self.model, "use_sde", False):
+            learners.renew_noise(self.model)
 
     def _evaluate(self) -> None:
         config, row = self._config, evaluate(self._config, self.model, self._envs)

@@ -12,10 +12,10 @@ from estimator.reference import is_reference
 from policies.task_names import canonical
 from policies.training import seeds
 from policies.training.algorithms import PPO, SAC, TQC, PrivilegedPPO, RecurrentPPO
-from slipgym.config import load, load_randomization
+from slipgym.config import load
 from slipgym.config.base import Count, Frozen, Positive, as_tuple
 from slipgym.config.errors import unknown
-from slipgym.config.load import Content, merge
+from slipgym.config.load import Content, merge, randomization_content
 from slipgym.envs.arguments import CommonArguments, fields
 from slipgym.registration import ENVIRONMENTS
 from slipgym.tasks import configure, find
@@ -27,10 +27,12 @@ _DIFFERENT: dict[str, Any] = {"randomization": "train", "config": {}}
 """Arguments with another default than that of the environment."""
 _TYPES: dict[str, Any] = {
     "observation_mode": Literal["flat", "deviations", "sensor"],
-    "randomization": str | Mapping[str, Any],
+    "randomization": Annotated[str | Mapping[str, Any], BeforeValidator(randomization_content)],
     "config": Content,
+    "history": Annotated[int, Field(le=1024)],
 }
-"""Arguments of another type: a training file holds plain data, and a policy gets no privileged group."""
+"""Arguments of another type: a policy's file holds plain data and so long a history; it gets no privileged
+group."""
 _FIELDS: dict[str, Any] = {
     name: (
         _TYPES.get(name, field.annotation),
@@ -44,9 +46,13 @@ _Arguments: Any = create_model("_Arguments", __base__=Frozen, **_FIELDS)
 class Environment(_Arguments):
     """Keyword arguments of the environment, as `slipgym.envs.arguments` declares them."""
 
+    @field_validator("friction_source", mode="before")
+    @classmethod
+    def _a_name(cls, given: Any) -> Any:
+        return "true" if given is True else given  # which YAML takes for a truth value
+
     @model_validator(mode="after")
     def _known(self) -> Self:
-        load_randomization(self.randomization)
         materials = ("random", *load(self.config, self.sensors, self.contact).materials)
         if self.material not in materials:
             raise ValueError(unknown("material", self.material, materials))
@@ -122,7 +128,7 @@ class Training(Frozen):
         default=False, description="Whether each environment of PyBullet has its own process [-]"
     )
     threads: Count = Field(default=1, description="Threads of torch [-]")
-    vary: Mapping[str, list[Any]] = Field(
+    vary: Mapping[str, Annotated[list[Any], Field(min_length=1)]] = Field(
         default={}, description="Options of reset; environment i always has combination i modulo their number"
     )
     spread: bool = Field(
@@ -178,6 +184,10 @@ class Training(Frozen):
             raise ValueError("spread needs engine 'planar'")
         for options in self.combinations():
             find(self.task).options.parse(options)
+        key = find(self.task).key
+        for overrides in (self.shaping, *chosen.curriculum.stages):
+            for name in (name for name in overrides.get("tasks", {}) if name != key):
+                raise ValueError(f"shaping and stages are of the run's task: {unknown('task', name, [key])}")
         for environment in trained:
             configure(find(self.task), environment.config, environment.sensors, environment.contact)
         return self
@@ -194,6 +204,11 @@ class Training(Frozen):
         stages = self.privileged_ppo.curriculum.stages
         overrides = stages[stage] if stage < len(stages) else {}
         return self.model_copy(update={"shaping": merge(self.shaping, overrides)})
+
+    def without_start(self) -> Training:
+        """The run on from a checkpoint: it needs the policy that its actor started as no more."""
+        chosen = self.privileged_ppo.model_copy(update={"start": None})
+        return self.model_copy(update={"privileged_ppo": chosen})
 
     def combinations(self) -> list[dict[str, Any]]:
         """Every combination of the options of reset that vary; without any, a single empty one."""

@@ -114,8 +114,8 @@ def fold(
 ) -> dict[str, torch.Tensor]:
     """Parameters of a network that reads the observation alone and computes the same.
 
-    The clipping of normalised derived columns is left out. Parameters are the state of an "MlpPolicy" of PPO,
-    its observations are normalised (k + d columns), and derived by `matrix`, (d, k).
+    Parameters are the state of an "MlpPolicy" of PPO, its observations are normalised (k + d columns), and
+    derived by `matrix`, (d, k).
     """
     moments = normalisation.obs_rms if normalisation.norm_obs else None
     found = dict(parameters)

@@ -30,6 +30,8 @@ except ImportError:  # Windows
 
 LOCK = ".lock"
 """Name of the file that is locked; it stays in the folder."""
+SWEEP = "optuna.journal"
+"""Name of the file that the folder of a sweep has."""
 _ORDER, _RESULT, _CURVE = "run.yaml", "result.json", "curve.csv"
 _NONE = f"{{}} holds no training run: there is no {_ORDER} in it"
 

@@ -24,6 +24,8 @@ _CLASSES: dict[str, Any] = {"ppo": PPO, "recurrent_ppo": RecurrentPPO, "sac": SA
 _ACTIVATIONS = {"tanh": nn.Tanh, "relu": nn.ReLU, "elu": nn.ELU}
 _EPSILON = {"ppo": 1e-5, "recurrent_ppo": 1e-5}
 """Epsilon of Adam where it is not torch's; that of Stable-Baselines3."""
+_HUGE = 1e12
+"""A parameter that no network has that acts; its square is still a number of 32 bits."""
 _OF_POLICY = ("net_arch", "activation", "log_std_init", "lstm_hidden_size", "n_critics")
 _COUNTERS = ("num_timesteps", "_episode_num", "_n_updates", "_current_progress_remaining")
 _LAST = ("_last_obs", "_last_episode_starts", "_last_original_obs")
@@ -44,6 +46,8 @@ def normalised(config: Training, envs: Any, training: bool = True) -> VecNormali
     )
     if isinstance(envs, DerivedVecEnv) and chosen.observation:
         made.obs_rms = Moments(envs.matrix.shape[1], sum(envs.matrix.shape))
+        ends: Any = np.repeat([chosen.clip, np.inf], envs.matrix.shape[::-1])
+        made.clip_obs = ends  # derived columns keep their size: `fold` is exact
     return made
 
 
@@ -159,6 +163,25 @@ def _set_state(model: Any, state: dict[str, Any]) -> None:
     np.random.set_state(generators["numpy"])  # noqa: NPY002
     random.setstate(generators["python"])
     model.action_space.np_random.bit_generator.state = generators["actions"]
+
+
+def check_finite(model: Any) -> None:
+    """Raise FloatingPointError if a parameter of a learner's networks is NaN or too large for its sums."""
+    networks = (model.ppo.actor, model.ppo.critic) if isinstance(model, PrivilegedPPO) else (model.policy,)
+    if not all(bool((one.abs() < _HUGE).all()) for each in networks for one in each.parameters()):
+        raise FloatingPointError(
+            f"after {model.num_timesteps} steps a parameter of the learner is NaN or beyond {_HUGE:g}: try a "
+            "smaller learning_rate"
+        )
+
+
+def renew_noise(model: Any) -> None:
+    """Draw the noise of gSDE anew, as the number of steps says.
+
+    Stable-Baselines3 draws it before a run writes its checkpoint; a resumed run draws it once more.
+    """
+    torch.manual_seed(model.num_timesteps)
+    model.policy.reset_noise(model.n_envs)
 
 
 def set_parameters(model: Any, state: dict[str, Any]) -> None:

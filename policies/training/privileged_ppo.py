@@ -144,8 +144,7 @@ class PrivilegedPPO:
                 scaled = (values - rms.mean) / np.sqrt(rms.var + policy_tensors.EPSILON)
                 scaled = np.clip(scaled, -chosen.clip, chosen.clip).astype(np.float32)
             if name == "policy" and len(self.matrix):
-                more = np.clip(values @ self.matrix.T, -chosen.clip, chosen.clip)
-                scaled = np.concatenate((scaled, more), axis=1, dtype=np.float32)
+                scaled = np.concatenate((scaled, values @ self.matrix.T), axis=1, dtype=np.float32)
             found[name] = torch.from_numpy(scaled)
         return TensorDict(found, batch_size=[len(observations["policy"])])
 

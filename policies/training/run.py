@@ -36,6 +36,7 @@ def train(path: Path, progress: bool = True, position: int = 0) -> dict[str, Any
 
     Raises:
         FileNotFoundError: The folder holds no run.
+        FloatingPointError: A parameter of the learner is NaN or huge.
         ValueError: Its checkpoints are damaged, or another process trains it.
         OSError: It cannot be written.
     """
@@ -45,10 +46,10 @@ def train(path: Path, progress: bool = True, position: int = 0) -> dict[str, Any
 
 
 def _train(path: Path, config: Training, seed: int, progress: bool, position: int) -> dict[str, Any]:
-    model = learners.begin(config, seeds.training(seed))
+    state = checkpoints.last(path)
+    model = learners.begin(config.without_start() if state else config, seeds.training(seed))
     held_out = vector.make(config, seeds.held_out(0), min(config.num_envs, config.evaluation.episodes))
     try:
-        state = checkpoints.last(path)
         if state:
             with fits(f"{path}: the last checkpoint"):
                 learners.set_state(model, state["learner"])
@@ -62,12 +63,20 @@ def _train(path: Path, config: Training, seed: int, progress: bool, position: in
                 with fits(f"{path}: the last checkpoint"):
                     callback.set_state(state["record"])
             if not callback.ended:
-                model.learn(config.budget - steps, callback, reset_num_timesteps=state is None)
+                _learn(model, config.budget - steps, callback, state is None)
         writer.close()
         return _finish(path, config, seed, model, callback)
     finally:
         model.get_env().close()
         held_out.close()
+
+
+def _learn(model: Any, steps: int, callback: TrainingCallback, fresh: bool) -> None:
+    try:
+        model.learn(steps, callback, reset_num_timesteps=fresh)
+    except (ValueError, RuntimeError):  # of torch, in the middle of an update
+        learners.check_finite(model)
+        raise
 
 
 def _best(path: Path, callback: TrainingCallback) -> dict[str, Any]:

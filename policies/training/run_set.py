@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
@@ -10,6 +11,7 @@ from typing import Any
 from policies import parallel
 from policies.evaluation.plots.style import STYLE, styled
 from policies.training import curve, folder
+from policies.training import model as learners
 from policies.training import seeds as numbers
 from policies.training.config import Training
 from policies.training.files import changed
@@ -24,10 +26,12 @@ def resumed(path: Path, others: Mapping[str, Any], jobs: int, ray: str) -> Calla
 
     Raises:
         FileNotFoundError: The folder holds no run.
-        ValueError: Another option is given.
+        ValueError: Another option is given, or the folder is of a sweep.
     """
     for name in (name for name, value in others.items() if value):
         raise ValueError(f"--resume goes on as the run was begun: leave out {name}")
+    if (path / folder.SWEEP).exists():
+        raise ValueError(f"{path}: a sweep does not go on; --resume {path / 'trial__0'} ends one of its runs")
     folder.runs(path)
     return partial(train_all, path, jobs, ray)
 
@@ -61,6 +65,7 @@ def begun(
         raise ValueError("a sweep takes one seed and one friction source")
     for source in sources:
         config = changed(config, {"environment.friction_source": source}, "--friction-source")
+    _try(sweep.first(config))
     path = sweep.begin(config, output)
     return path, partial(sweep.sweep, path, config, trials, *seeds or (0,), jobs, ray)
 
@@ -69,7 +74,8 @@ def begin(config: Training, seeds: Sequence[int], sources: Sequence[str], output
     """Makes a study's folder in `output`, with one for each source (none: the configuration's) and seed.
 
     Raises:
-        ValueError: A source is unknown, or a seed out of range or given twice.
+        ValueError: A source is unknown, a seed out of range or given twice, or the environment does not fit
+            the learner.
     """
     if len(set(seeds)) < len(seeds):
         raise ValueError(f"--seeds {' '.join(map(str, seeds))}: each seed only once")
@@ -78,11 +84,21 @@ def begin(config: Training, seeds: Sequence[int], sources: Sequence[str], output
     conditions = [
         changed(config, {"environment.friction_source": source}, "--friction-source") for source in sources
     ] or [config]
+    for condition in conditions:
+        _try(condition)
     path = stamped(output, f"{find(config.task).key}__{config.algorithm}")
     for condition in conditions:
         for seed in seeds:
             folder.begin(path / f"{condition.environment.friction_source}__{seed}", condition, seed)
     return path
+
+
+def _try(config: Training) -> None:
+    """Makes the learner and its environments: what cannot be made is refused before there is a folder."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # the run warns
+        learner = learners.begin(config.model_copy(update={"processes": False}), 0)
+    learner.get_env().close()
 
 
 def train_all(path: Path, jobs: int = 1, ray: str = "", progress: bool = True) -> str:

@@ -21,14 +21,20 @@ from slipgym import atomic_io
 from slipgym.tasks import find
 
 
-def begin(config: Training, output: Path) -> Path:
-    """Makes the folder of a sweep.
+def first(config: Training) -> Training:
+    """The configuration with the first value of everything that a sweep of it tries.
 
     Raises:
-        ValueError: The configuration declares nothing to try.
+        ValueError: It declares nothing to try, or a key or value is wrong.
     """
     if not config.sweep:
         raise ValueError("nothing to try: the configuration has no key sweep, a mapping of dotted keys")
+    values = {key: one.choices[0] if one.choices else one.low for key, one in config.sweep.items()}
+    return files.changed(config, values, "sweep")
+
+
+def begin(config: Training, output: Path) -> Path:
+    """Makes the folder of a sweep."""
     path = stamped(output, f"{find(config.task).key}__{config.algorithm}__sweep")
     path.mkdir(parents=True)
     _study(path)
@@ -97,7 +103,7 @@ def _values(parameters: Mapping[str, Any]) -> dict[str, Any]:
 
 def _study(path: Path, sampler: Any = None) -> optuna.Study:
     optuna.logging.set_verbosity(optuna.logging.WARNING)
-    storage = JournalStorage(JournalFileBackend(str(path / "optuna.journal")))
+    storage = JournalStorage(JournalFileBackend(str(path / folder.SWEEP)))
     return optuna.create_study(
         storage=storage, study_name="sweep", direction="maximize", sampler=sampler, load_if_exists=True
     )

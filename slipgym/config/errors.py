@@ -133,7 +133,7 @@ class _Schema:
             text = f"a list{least}: each {self.allowed(self._followed(node['items']))}"
         else:
             bounds = " and ".join(f"{sign} {node[key]:g}" for key, sign in _BOUNDS.items() if key in node)
-            text = " ".join([_KINDS[node["type"]], bounds]).strip()
+            text = " ".join([_KINDS[node["type"]] if "type" in node else "any value", bounds]).strip()
         return f"{text} ({node['description']})" if "description" in node else text
 
     def _followed(self, node: dict[str, Any]) -> dict[str, Any]:

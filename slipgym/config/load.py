@@ -80,6 +80,18 @@ def content(overrides: Any) -> Any:
     return read_overrides(overrides)[1] if isinstance(overrides, str) else overrides
 
 
+def randomization_content(choice: Any) -> Any:
+    """A preset's name or a mapping as it is; the content of a file, so that a path need not be kept.
+
+    Raises:
+        FileNotFoundError, ValueError: As those of `load_randomization`.
+    """
+    load_randomization(choice)
+    if isinstance(choice, str | os.PathLike) and choice not in names("randomization"):
+        return files.read(Path(choice))
+    return choice
+
+
 def load_randomization(choice: Overrides = "none", tasks: Iterable[str] | None = None) -> Randomization:
     """Loads a randomization: the distributions that every episode is sampled from.
 

@@ -152,7 +152,8 @@ class SlipVectorEnv(Conventions, gym.vector.VectorEnv[Any, np.ndarray, np.ndarra
         self._observer.next(active)
         rewards, terminated, truncated = simulation.rewards, simulation.terminated, simulation.truncated
         if self._limit is not None:  # as Gymnasium's TimeLimit, whether or not the episode ends anyway
-            truncated |= active & (simulation.episode["step"] >= self._limit * self._frame_skip)
+            last = (self._limit - 1) * self._frame_skip  # an end may cut the last step short
+            truncated |= active & (simulation.episode["step"] > last)
         self._pictures.keep(active)
         over = terminated | truncated
         ended: dict[str, Any] = {}

@@ -149,6 +149,23 @@ def test_an_episode_that_is_over_does_not_go_on():
     env.close()
 
 
+def test_an_episode_that_ends_in_its_last_step_is_truncated_too():
+    """The end cuts that step short; Gymnasium's TimeLimit counts it."""
+    arguments = {"frame_skip": 4, "max_episode_steps": 6}
+    batch = gym.make_vec(ID, num_envs=2, autoreset_mode="Disabled", **arguments)
+    single = gym.make(ID, disable_env_checker=True, engine="planar", **arguments)
+    drop = {"material": "wood"}
+    batch.reset(seed=3, options=drop), single.reset(seed=3, options=drop)
+    for step in range(6):
+        _, _, terminated, truncated, _ = batch.step(np.full((2, 1), -1.0, np.float32))
+        *_, ended, cut, _ = single.step(np.full(1, -1.0, np.float32))
+        assert (bool(terminated[0]), bool(truncated[0])) == (ended, cut), step
+        if ended or cut:
+            break
+    assert (ended, cut) == (True, True)
+    batch.close(), single.close()
+
+
 @pytest.mark.parametrize("threads", [1, 2])
 def test_a_closed_environment_says_so(threads):
     env = gym.make_vec(ID, num_envs=3, threads=threads)

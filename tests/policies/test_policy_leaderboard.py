@@ -217,3 +217,10 @@ def test_a_policy_keeps_the_friction_source_that_it_asks_for(tmp_path, monkeypat
     (entry,) = entered(["blind_entry:Blind"], "estimated")
     assert entry.arguments["friction_source"] == "none"
     assert entry.name == "blind_entry:Blind, none"
+
+
+def test_a_policys_file_says_its_friction_source():
+    place = str(pretrained.folders()["hold_scratch"])
+    assert [each.arguments["friction_source"] for each in entered([place, place], None)] == ["true", "true"]
+    (on_estimates,) = entered([place], "estimated")
+    assert on_estimates.arguments["friction_source"] == "estimated"

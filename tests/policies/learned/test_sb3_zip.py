@@ -113,3 +113,13 @@ def test_the_command_line(zipped, tmp_path):
     assert LearnedPolicy(tmp_path / "policy").modes == {"history": 1}
     missing = CliRunner().invoke(app, [str(tmp_path / "none.zip"), "x", "--environment", ENV])
     assert missing.exit_code == 2
+
+
+def test_the_command_takes_a_task_and_refuses_other_environments(zipped, tmp_path):
+    settings = ["--set", "friction_source=true", "history=1"]
+    done = CliRunner().invoke(app, [str(zipped), str(tmp_path / "p"), "--environment", "hold", *settings])
+    assert done.exit_code == 0, done.stderr
+    assert LearnedPolicy(tmp_path / "p").description.environment.id == ENV
+    wrong = CliRunner().invoke(app, [str(zipped), str(tmp_path / "q"), "--environment", "hld"])
+    assert wrong.exit_code == 2
+    assert "'hold'" in wrong.output

@@ -52,6 +52,12 @@ def test_every_sweep_tries_keys_that_exist():
         (["budget={"], r"--set budget"),
         (["sweep={ppo.gamma: {low: 1}}"], r"either low and high or choices"),
         (["sweep={ppo.gamma: {low: 2, high: 1}}"], r"must not exceed"),
+        (["vary={slide: 0.01}"], r"vary\.slide = 0\.01: must be a list of at least 1: each any value"),
+        (["vary={slide: []}"], r"vary\.slide = \[\]: must be a list of at least 1"),
+        (["shaping={tasks: {linear_slp: {}}}"], r"unknown task 'linear_slp'; did you mean 'linear_slip'"),
+        (["privileged_ppo.curriculum.stages=[{tasks: {hold: {}}}]"], r"unknown task 'hold'"),
+        (["privileged_ppo.net_arch=[9000]"], r"net_arch.* = 9000"),
+        (["environment.history=2000"], r"history = 2000"),
     ],
 )
 def test_what_is_wrong_is_named(texts, message):
@@ -109,3 +115,52 @@ def test_resuming_takes_no_other_option(tmp_path):
         run_set.resumed(tmp_path, {"--seeds": None, "--budget": 3}, 1, "")
     with pytest.raises(FileNotFoundError, match="holds no training run"):
         run_set.resumed(tmp_path, {"--seeds": None}, 1, "")
+
+
+def test_a_file_of_a_randomization_is_kept_as_its_content(tmp_path):
+    path = tmp_path / "mine.yaml"
+    path.write_text("noise_scale: {uniform: [0.5, 1.5]}\n")
+    chosen = files.chosen("linear_slip", {}, [f"environment.randomization={path}"])
+    assert chosen.environment.randomization == {"noise_scale": {"uniform": [0.5, 1.5]}}
+    path.write_text("noise: 1\n")
+    with pytest.raises(ValueError, match=r"mine\.yaml: .*unknown key 'noise'"):
+        files.chosen("linear_slip", {}, [f"environment.randomization={path}"])
+
+
+def test_a_truth_value_of_yaml_is_the_true_friction():
+    chosen = files.chosen("linear_slip", {}, ["environment.friction_source=true"])
+    assert chosen.environment.friction_source == "true"
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"environment.level": "harder"},
+        {"environment.estimator": "foo"},
+        {"derived": {"error": {"slp": 1.0}}},
+        {"privileged_ppo.mirrored": ["slp"]},
+        {"privileged_ppo.start": "nowhere"},
+    ],
+)
+def test_what_cannot_be_made_leaves_no_folder(tmp_path, changes):
+    pytest.importorskip("stable_baselines3")
+    from policies.training import run_set
+
+    config = files.load("linear_slip", changes)
+    with pytest.raises((ValueError, FileNotFoundError)):
+        run_set.begun(config, [], [], 0, tmp_path, 1, "")
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_sweep_is_tried_before_there_is_a_folder_and_does_not_go_on(small, tmp_path):
+    pytest.importorskip("optuna")
+    from policies.training import run_set, sweep
+
+    with pytest.raises(ValueError, match=r"ppo\.gama: unknown key 'gama'"):
+        run_set.begun(small(sweep={"ppo.gama": {"low": 0.5, "high": 0.9}}), [], [], 2, tmp_path, 1, "")
+    with pytest.raises(ValueError, match="no key sweep"):
+        run_set.begun(small(), [], [], 2, tmp_path, 1, "")
+    assert not list(tmp_path.iterdir())
+    path = sweep.begin(small(sweep={"ppo.gamma": {"low": 0.5, "high": 0.9}}), tmp_path)
+    with pytest.raises(ValueError, match="a sweep does not go on"):
+        run_set.resumed(path, {}, 1, "")

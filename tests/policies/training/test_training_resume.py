@@ -61,17 +61,20 @@ def whole_and_broken(config, tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize(
-    "algorithm",
+    ("algorithm", "chosen"),
     [
-        "ppo",
-        pytest.param("recurrent_ppo", marks=pytest.mark.slow),
-        pytest.param("sac", marks=pytest.mark.slow),
-        pytest.param("tqc", marks=pytest.mark.slow),
+        ("ppo", {}),
+        ("ppo", {"ppo": {"n_steps": 16, "batch_size": 16, "n_epochs": 1, "use_sde": True}}),
+        pytest.param("recurrent_ppo", {}, marks=pytest.mark.slow),
+        pytest.param("sac", {}, marks=pytest.mark.slow),
+        pytest.param("tqc", {}, marks=pytest.mark.slow),
     ],
+    ids=["ppo", "ppo-sde", "recurrent_ppo", "sac", "tqc"],
 )
-def test_a_resumed_run_is_equal_bit_for_bit(small, tmp_path, monkeypatch, algorithm):
+def test_a_resumed_run_is_equal_bit_for_bit(small, tmp_path, monkeypatch, algorithm, chosen):
     config = small(
         algorithm=algorithm,
+        **chosen,
         spread=True,
         derived={"grip": {"f_n_1": 0.5, "f_n_2": 0.5}} if algorithm == "ppo" else {},
     )
@@ -107,6 +110,28 @@ def test_a_resumed_run_with_stages_is_equal_bit_for_bit(small, tmp_path, monkeyp
     for end in ends:
         end["record"].pop("seconds"), end["record"].pop("cpu_seconds")
     assert differing(*ends) == []
+
+
+def test_a_run_goes_on_without_the_policy_that_it_started_from(small, tmp_path, monkeypatch):
+    """Its path is relative, and nothing is there any more."""
+    chosen = {"n_steps": 16, "n_epochs": 1, "n_minibatches": 1}
+    folder.begin(tmp_path / "first", small(algorithm="privileged_ppo", privileged_ppo=chosen, budget=32), 0)
+    run.train(tmp_path / "first", progress=False)
+    monkeypatch.chdir(tmp_path)
+    config = small(algorithm="privileged_ppo", privileged_ppo={**chosen, "start": "first/policy"})
+    save = checkpoints.save
+
+    def save_and_leave(path, steps, state, keep):
+        save(path, steps, state, keep)
+        if steps == 64 and (tmp_path / "first").exists():
+            (tmp_path / "first").rename(tmp_path / "elsewhere")
+            raise Killed
+
+    folder.begin(tmp_path / "second", config, 0)
+    monkeypatch.setattr(checkpoints, "save", save_and_leave)
+    with pytest.raises(Killed):
+        run.train(tmp_path / "second", progress=False)
+    assert run.train(tmp_path / "second", progress=False)["steps"] == 96
 
 
 def test_the_comparison_notices_one_bit(small, tmp_path):
