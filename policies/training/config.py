@@ -186,7 +186,9 @@ class Training(Frozen):
             find(self.task).options.parse(options)
         key = find(self.task).key
         for overrides in (self.shaping, *chosen.curriculum.stages):
-            for name in (name for name in overrides.get("tasks", {}) if name != key):
+            tasks = overrides.get("tasks")
+            others = [name for name in tasks if name != key] if isinstance(tasks, Mapping) else []
+            for name in others:
                 raise ValueError(f"shaping and stages are of the run's task: {unknown('task', name, [key])}")
         for environment in trained:
             configure(find(self.task), environment.config, environment.sensors, environment.contact)

@@ -176,11 +176,12 @@ def check_finite(model: Any) -> None:
 
 
 def renew_noise(model: Any) -> None:
-    """Draw the noise of gSDE anew, as the number of steps says.
+    """Draw the noise of gSDE anew, as the run's seed and the number of steps say.
 
     Stable-Baselines3 draws it before a run writes its checkpoint; a resumed run draws it once more.
     """
-    torch.manual_seed(model.num_timesteps)
+    (seed,) = np.random.SeedSequence([model.seed, model.num_timesteps]).generate_state(1).tolist()
+    torch.manual_seed(seed)
     model.policy.reset_noise(model.n_envs)
 
 

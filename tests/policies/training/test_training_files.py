@@ -56,6 +56,7 @@ def test_every_sweep_tries_keys_that_exist():
         (["vary={slide: []}"], r"vary\.slide = \[\]: must be a list of at least 1"),
         (["shaping={tasks: {linear_slp: {}}}"], r"unknown task 'linear_slp'; did you mean 'linear_slip'"),
         (["privileged_ppo.curriculum.stages=[{tasks: {hold: {}}}]"], r"unknown task 'hold'"),
+        (["shaping={tasks: 3}"], r"tasks = 3"),
         (["privileged_ppo.net_arch=[9000]"], r"net_arch.* = 9000"),
         (["environment.history=2000"], r"history = 2000"),
     ],
