@@ -74,6 +74,7 @@ def begin(config: Training, seeds: Sequence[int], sources: Sequence[str], output
     """Makes a study's folder in `output`, with one for each source (none: the configuration's) and seed.
 
     Raises:
+        FileNotFoundError: There is no policy to start from.
         ValueError: A source is unknown, a seed out of range or given twice, or the environment does not fit
             the learner.
     """

@@ -16,7 +16,7 @@ from slipgym.envs.observation import DEVIATION_COLUMNS
 
 @pytest.fixture(scope="module", params=[0, 5])
 def trained(request, small, tmp_path_factory):
-    """A run and its configuration, without and with a memory; it reads a derived column of up to 100."""
+    """A run and its configuration, without and with a memory; it reads a derived column beyond the clip."""
     chosen = {"n_steps": 16, "n_epochs": 1, "n_minibatches": 1, "memory": request.param, "net_arch": [8, 6]}
     error = {"error": {"measured_slip_y": -2000.0, "reference_position": -2000.0}}
     config = small(algorithm="privileged_ppo", privileged_ppo=chosen, derived=error)

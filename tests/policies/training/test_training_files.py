@@ -134,21 +134,21 @@ def test_a_truth_value_of_yaml_is_the_true_friction():
 
 
 @pytest.mark.parametrize(
-    "changes",
+    ("changes", "named"),
     [
-        {"environment.level": "harder"},
-        {"environment.estimator": "foo"},
-        {"derived": {"error": {"slp": 1.0}}},
-        {"privileged_ppo.mirrored": ["slp"]},
-        {"privileged_ppo.start": "nowhere"},
+        ({"environment.level": "harder"}, "unknown level of linear_slip 'harder'"),
+        ({"environment.estimator": "foo"}, "'foo'"),
+        ({"derived": {"error": {"slp": 1.0}}}, "derived: unknown column 'slp'"),
+        ({"privileged_ppo.mirrored": ["slp"]}, r"privileged_ppo\.mirrored: unknown column 'slp'"),
+        ({"privileged_ppo.start": "nowhere"}, "nothing at 'nowhere'"),
     ],
 )
-def test_what_cannot_be_made_leaves_no_folder(tmp_path, changes):
+def test_what_cannot_be_made_leaves_no_folder(tmp_path, changes, named):
     pytest.importorskip("stable_baselines3")
     from policies.training import run_set
 
     config = files.load("linear_slip", changes)
-    with pytest.raises((ValueError, FileNotFoundError)):
+    with pytest.raises((ValueError, FileNotFoundError), match=named):
         run_set.begun(config, [], [], 0, tmp_path, 1, "")
     assert not list(tmp_path.iterdir())
 
