@@ -1,13 +1,13 @@
 """Finds and reads YAML files."""
 
 from collections.abc import Mapping
-from functools import cache
+from functools import cache, lru_cache
 from pathlib import Path
 from typing import Any
 
 from estimator.plain_files import DEPTH, NODES, content, parse
 
-__all__ = ["check_size", "folder", "parse", "read"]
+__all__ = ["check_size", "folder", "parse", "read", "read_once"]
 
 _PACKAGE = Path(__file__).resolve().parents[1]
 
@@ -38,6 +38,17 @@ def read(path: Path) -> dict[str, Any]:
     if not isinstance(data, dict):
         raise ValueError(f"{path}: must be a mapping of names to values, got {type(data).__name__}")
     return data
+
+
+def read_once(path: Path) -> dict[str, Any]:
+    """As `read`; a file that has not changed is not read again, and the result must not be changed."""
+    now = path.stat()
+    return _read_once(path, now.st_mtime_ns, now.st_size)
+
+
+@lru_cache(maxsize=256)
+def _read_once(path: Path, *_: int) -> dict[str, Any]:
+    return read(path)
 
 
 def check_size(values: Mapping[Any, Any], source: str) -> None:

@@ -90,4 +90,4 @@ def load_level(choice: Choice, task: str) -> Chosen:
 
 def _levels(task: str) -> Mapping[str, Mapping[str, Any]]:
     path = files.folder() / _FOLDER / f"{task}.yaml"
-    return files.read(path) if path.is_file() else {DEFAULT: {}}
+    return files.read_once(path) if path.is_file() else {DEFAULT: {}}

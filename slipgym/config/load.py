@@ -44,10 +44,7 @@ def load(
     """
     if sensors not in names("sensors"):
         raise ValueError(unknown("sensors", sensors, names("sensors")))
-    defaults, sources = _files(sensors)
-    config = validate(
-        defaults, Config, lambda location: sources.get(location[0] if location else "", "defaults")
-    )
+    defaults, config = _files(sensors)
     if contact is not None:
         defaults = merge(defaults, {"contact": {"model": contact}})
         config = validate(defaults, Config, "contact argument")
@@ -122,15 +119,16 @@ def names(kind: str) -> tuple[str, ...]:
 
 
 @cache
-def _files(sensors: str) -> tuple[dict[str, Any], dict[str | int, str]]:
-    """Values of the files, and for each top-level key the file that it comes from."""
-    preset = f"sensors/{sensors}.yaml"
+def _files(sensors: str) -> tuple[dict[str, Any], Config]:
+    """Values of the files, and the configuration that they are."""
+    sources = {"materials": "materials.yaml", "sensors": f"sensors/{sensors}.yaml"}
     values = files.read(files.folder() / "default.yaml")
-    sources: dict[str | int, str] = dict.fromkeys(values, "default.yaml")
-    for key, name in (("materials", "materials.yaml"), ("sensors", preset)):
-        values[key] = files.read(files.folder() / name)
-        sources[key] = name
-    return values, {key: str(files.folder() / name) for key, name in sources.items()}
+    values |= {key: files.read(files.folder() / name) for key, name in sources.items()}
+
+    def source(location: tuple[str | int, ...]) -> str:
+        return str(files.folder() / sources.get(str(location[0]) if location else "", "default.yaml"))
+
+    return values, validate(values, Config, source)
 
 
 def merge(base: Mapping[str, Any], overrides: Mapping[str, Any]) -> dict[str, Any]:

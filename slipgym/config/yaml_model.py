@@ -43,7 +43,7 @@ def read_model(
     values, source, name = chosen(choice, kind, names(folder))
     if name:
         path = files.folder() / folder / f"{name}.yaml"
-        values, source = files.read(path), os.fspath(path)
+        values, source = files.read_once(path), os.fspath(path)
     return validate(values, model, source, context)
 
 

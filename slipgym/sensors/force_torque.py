@@ -18,8 +18,8 @@ from slipgym.contact.records import Pad
 from slipgym.sensors.misalignment import mixed, share
 from slipgym.sensors.noise import standard_normal
 
-HISTORY = 64
-"""Loads that a sensor can keep at most, for its latency."""
+FEW, HISTORY = 4, 64
+"""Loads that a small record has room for, and a large one: a sensor can keep no more for its latency."""
 
 
 FORCE_TORQUE_FIXED = np.dtype(
@@ -46,16 +46,12 @@ FORCE_TORQUE_FIXED = np.dtype(
 """Fields of FORCE_TORQUE that the configuration fixes for all episodes."""
 
 
-def force_torque(kept: int, misaligned: bool = False, swings: bool = False) -> np.dtype:
-    """FORCE_TORQUE, the record of a sensor that keeps some loads.
+def force_torque(large: bool) -> np.dtype:
+    """FORCE_TORQUE, the record of a sensor: with room for all, or for `FEW` loads without `mix` and `swing`.
 
-    It has room for 4, 16 or `HISTORY` of them, for `mix` only if it is used or the room is not the least, and
-    for `swing` only if the finger has a mode: among thousands of records space costs time, and every other
-    dtype has to be compiled for.
+    Among thousands of records space costs time, and every other dtype has to be compiled for.
     """
-    large = misaligned or kept > 4
-    room, axes = (HISTORY if kept > 16 else 16, 6) if large else (4, 1)
-    numbers, rows = (5, (3, 6)) if swings else (1, (1, 1))
+    room, axes, numbers, rows = (HISTORY, 6, 5, (3, 6)) if large else (FEW, 1, 1, (1, 1))
     episode = np.dtype(
         [
             ("delay", "i8"),  # latency in ticks
@@ -69,8 +65,8 @@ def force_torque(kept: int, misaligned: bool = False, swings: bool = False) -> n
             ("read", "i8"),  # readings since reset
             ("mode", "f8", numbers),  # see `slipgym.sensors.structure`, like the next; 0: the finger has none
             ("swing", "f8", rows),
-            ("history", "f8", (room, 6)),  # loads at the newest samples, in turn
             ("mix", "f8", (axes, axes)),  # of the load on all axes
+            ("history", "f8", (room, 6)),  # loads at the newest samples, in turn
         ]
     )
     return joined(FORCE_TORQUE_FIXED, episode)
@@ -78,8 +74,7 @@ def force_torque(kept: int, misaligned: bool = False, swings: bool = False) -> n
 
 def roomier(sensors: np.ndarray, kept: int) -> np.ndarray:
     """The same FORCE_TORQUE with room for more loads, at most `HISTORY`, none of which there is yet."""
-    misaligned, swings = bool(sensors["misaligned"].any()), bool(sensors["mode"].any())
-    larger = np.zeros(sensors.shape, force_torque(kept, misaligned, swings))
+    larger = np.zeros(sensors.shape, force_torque(kept > FEW or sensors.dtype == force_torque(large=True)))
     for name in larger.dtype.names or ():
         if name != "history":
             larger[name] = sensors[name]

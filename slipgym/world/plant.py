@@ -11,8 +11,8 @@ from pydantic import BaseModel
 from slipgym.config import Config
 from slipgym.contact.pressure import OUTER_RADII, friction_axes, patch_cells, stretch
 from slipgym.contact.records import CONFIGURED, DISC, ELLIPSOID, pads, patch, rest
+from slipgym.sensors.force_torque import FEW, force_torque
 from slipgym.sensors.force_torque import HISTORY as FORCE_HISTORY
-from slipgym.sensors.force_torque import force_torque
 from slipgym.sensors.markers import COLUMNS, MARKERS, ROWS
 from slipgym.sensors.owned import GRIPPER, PLACES
 from slipgym.sensors.slip_velocity import HISTORY as SLIP_HISTORY
@@ -185,8 +185,8 @@ def _force_torque(config: Config, n: int, tick_rate: int) -> np.ndarray:
         return (tangential, tangential, normal, torque, torque, torque)
 
     misaligned = sensor.off_centre + sensor.tilt + sensor.crosstalk > 0.0
-    swings = sensor.mode_frequency is not None
-    array = np.zeros((n, 2), force_torque(kept, misaligned, swings))
+    large = misaligned or sensor.mode_frequency is not None or kept > FEW
+    array = np.zeros((n, 2), force_torque(large))
     if sensor.mode_frequency is not None:
         array["mode"] = mode(sensor.mode_frequency, sensor.mode_damping, 1.0 / sensor.rate)
         array["swing"][..., LOAD, 0] = np.inf
