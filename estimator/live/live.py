@@ -64,7 +64,7 @@ class Live:
         if not 0.0 <= lateness <= 1.0:
             raise ValueError(f"lateness = {lateness!r} s: expected 0 to 1")
         self.fingers, self.rates, self.grip = fingers, rates, math.nan
-        self._log = log or (lambda line: None)
+        self._log: Callable[[dict[str, Any]], None] = lambda line: None
         self._hands = {}
         for finger in range(1, fingers + 1):
             sources = {
@@ -72,8 +72,15 @@ class Live:
                 for (kind, what), rate in zip(KINDS.items(), rates, strict=True)
             }
             self._hands[finger] = Hand(finger, _ready(estimator, parameters), sources, lateness)
-        self._log({"live": 1, "estimator": estimator, "parameters": parameters, "rates": list(rates),
-                   "lateness": lateness, "clocks": clocks})  # fmt: skip
+        self._arguments = {"live": 1, "estimator": estimator, "parameters": parameters, "rates": list(rates),
+                           "lateness": lateness, "clocks": clocks}  # fmt: skip
+        if log is not None:
+            self.begin_log(log)
+
+    def begin_log(self, log: Callable[[dict[str, Any]], None]) -> None:
+        """Gives a log the arguments, and from now on each reading and each output."""
+        self._log = log
+        log(self._arguments)
 
     def feed_wrench(
         self, finger: int, stamp: float, wrench: Sequence[float], arrival: float | None = None

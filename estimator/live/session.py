@@ -38,6 +38,11 @@ class Session:
         self._log, self._second, self._errors = log, 0, 0
         self._looked, self._warnings = -math.inf, {}
 
+    def begin_log(self, log: Log) -> None:
+        """Writes errors, commands and what the core writes to a log from now on."""
+        self._log = log
+        self.live.begin_log(log)
+
     def take(self, text: bytes | str, now: float | None = None) -> list[dict[str, Any]]:
         """Answers one message.
 
