@@ -24,6 +24,7 @@ from estimator.records.checks import (
 )
 from estimator.records.columns import Columns
 from estimator.records.extras import extra
+from estimator.records.record import seconds
 from estimator.records.sources import read_sources
 from estimator.records.streams import of_one_finger, read_tables, stream
 from estimator.records.table import Table, listed
@@ -47,6 +48,8 @@ _ALIKE = 5.0
 """Ratio of the sizes of a motion and of what follows it, at most; noise makes less, by `OPPOSITE`."""
 RATES = (20.0, 2000.0)  # [Hz]
 ROWS_MAX = 200_000
+_AROUND = 5
+"""Rows before a gap, and after it, whose times are compared."""
 _INSIDE = 0.5
 """Share of the slip samples that must lie in the time of the forces."""
 
@@ -271,11 +274,22 @@ def _rate(table: Table, t: np.ndarray) -> float:
     if not 2 <= len(t) <= ROWS_MAX:
         raise ValueError(f"{table.name}: has {len(t)} rows; a log has 2 to {ROWS_MAX}")
     step = (t[-1] - t[0]) / (len(t) - 1)
-    off = np.abs(t - t[0] - step * np.arange(len(t))) > 0.5 * step
-    if not step > 0.0 or off.any():
+    off = t - t[0] - step * np.arange(len(t))
+    if not step > 0.0 or (np.abs(off) > 0.5 * step).any() or (_shifts(off) > 0.5 * step).any():
         steps = np.diff(t)
-        row = table.rows(np.array([np.argmax(np.abs(steps - np.median(steps))) + 1]))[0]
+        usual = np.median(steps)
+        k = int(np.argmax(np.abs(steps - usual)))
         raise ValueError(
-            f"{table.name}: row {row}: t must rise in equal steps; resample onto one clock first"
+            f"{table.name}: row {table.rows(np.array([k + 1]))[0]}: t = {seconds(t[k + 1])} s is "
+            f"{1e3 * steps[k]:.4g} ms after the row before, others {1e3 * usual:.4g} ms; "
+            "t must rise in equal steps; resample onto one clock first"
         )
     return float(1.0 / step)
+
+
+def _shifts(off: np.ndarray) -> np.ndarray:
+    """How far times are shifted from one row to the next, by medians that leave jitter out [s]."""
+    if len(off) < 2 * _AROUND:
+        return np.zeros(1)
+    level = np.median(np.lib.stride_tricks.sliding_window_view(off, _AROUND), axis=1)
+    return np.abs(level[_AROUND:] - level[:-_AROUND])

@@ -154,3 +154,28 @@ def test_a_motion_without_a_slip_sensor_has_a_bound_of_its_own(turned, tmp_path)
     frame.to_csv(tmp_path / "log.csv", index=False)
     with pytest.raises(ValueError, match=r"motion_y must be .* of at most 5 m/s"):
         read_log(tmp_path / "log.csv")
+
+
+@pytest.mark.parametrize("cut", [100, 550, 599, 600, 601, 1100])
+def test_a_missing_row_is_refused_wherever_it_is(log, tmp_path, cut):
+    pandas = pytest.importorskip("pandas")
+    write_log(log, tmp_path / "log.csv")
+    frame = pandas.read_csv(tmp_path / "log.csv")
+    assert len(frame) == 1200
+    frame.drop(index=[cut]).to_csv(tmp_path / "log.csv", index=False)
+    with pytest.raises(
+        ValueError, match=rf"row {cut + 1}: t = .* s is 16.67 ms after .* 8.333 ms.*equal steps"
+    ):
+        read_log(tmp_path / "log.csv")
+
+
+@pytest.mark.parametrize("way", ["jitter", "rounded"])
+def test_stamps_that_are_not_exact_are_no_missing_rows(log, tmp_path, way):
+    pandas = pytest.importorskip("pandas")
+    write_log(log, tmp_path / "log.csv")
+    frame = pandas.read_csv(tmp_path / "log.csv")
+    frame["t"] = frame.t.round(3) if way == "rounded" else frame.t
+    if way == "jitter":
+        frame["t"] += np.random.default_rng(0).normal(0.0, 1e-3, len(frame))
+    frame.to_csv(tmp_path / "log.csv", index=False)
+    assert read_log(tmp_path / "log.csv").rate == pytest.approx(log.rate, rel=1e-3)
