@@ -11,6 +11,7 @@ import numpy as np
 import policies
 from estimator.estimate import ESTIMATE
 from estimator.live import Live, Output
+from estimator.live.live import shown
 from estimator.sample import LARGEST
 from policies.learned import LearnedPolicy
 from slipgym.config.errors import unknown
@@ -143,7 +144,7 @@ class PolicyPilot:
                 raise ValueError(unknown("observation column", name, self._given))
             number = isinstance(value, int | float) and not isinstance(value, bool)
             if not number or not abs(value) < LARGEST:
-                raise ValueError(f"column {name}: expected a finite number")
+                raise ValueError(f"column {name} = {shown(value)}: expected a finite number")
         self._given.update(values)
 
     def _begin(self, why: str) -> None:

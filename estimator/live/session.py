@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from estimator.live.hand import Output
-from estimator.live.live import KINDS, Live, as_line
+from estimator.live.live import KINDS, Live, as_line, shown
 from estimator.live.log import Log
 
 LONGEST = 65536
@@ -70,10 +70,14 @@ class Session:
         keys = next((keys for keys in _FORMS if keys == set(message)), None)
         if keys is None:
             forms = "; ".join(", ".join(sorted(keys)) for keys in _FORMS)
-            raise ValueError(f"expected the keys of one form: {forms}")
+            raise ValueError(f"keys {shown(list(message))}: expected those of one form: {forms}")
         if "columns" in keys:
-            if self.pilot is None or not isinstance(message["columns"], Mapping):
-                raise ValueError("columns: expected a mapping, and a policy")
+            if self.pilot is None:
+                raise ValueError("columns: expected where a policy runs alone (--policy)")
+            if not isinstance(message["columns"], Mapping):
+                raise ValueError(
+                    f"columns = {shown(message['columns'])}: expected a mapping of names to numbers"
+                )
             self.pilot.set_columns(message["columns"])
         elif "grip" in keys:
             self.live.feed_grip(message["t"], message["grip"], now)
