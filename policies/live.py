@@ -11,12 +11,14 @@ import numpy as np
 import policies
 from estimator.estimate import ESTIMATE
 from estimator.live import Live, Output
+from estimator.live.live import shown
 from estimator.sample import LARGEST
 from policies.learned import LearnedPolicy
 from slipgym.config.errors import unknown
 from slipgym.envs import observation as layout
 from slipgym.envs.actions import COMMANDS, COMPONENT, PLACES, Actions, interpret
 from slipgym.envs.load_part import LOAD
+from slipgym.envs.sensor_part import LAYOUTS, layout_of
 from slipgym.sensors.markers import MARKERS
 from slipgym.sensors.owned import GRIPPER
 from slipgym.sensors.slip_velocity import SLIP_SENSOR
@@ -62,7 +64,10 @@ class PolicyPilot:
         if not gripper.force_min <= self._firm <= gripper.force_limit:
             raise ValueError(f"firm = {firm!r} N: expected {gripper.force_min} to {gripper.force_limit}")
         if not 2.0 / self._rate <= timeout <= 10.0:
-            raise ValueError(f"timeout = {timeout!r} s: expected {2.0 / self._rate:.3g} to 10")
+            raise ValueError(
+                f"timeout = {timeout!r} s: expected {2.0 / self._rate:.3g} to 10 (--timeout), two steps or "
+                f"more of the policy, which acts at {self._rate:g} Hz"
+            )
         every = live.rates[1] / self._rate
         self._every = round(every)
         if self._every < 1 or abs(every - self._every) > 0.02:
@@ -91,7 +96,8 @@ class PolicyPilot:
         read = policy.names if isinstance(policy, LearnedPolicy) else None
         task = find(trained.id if trained else task_name)
         arguments = dict(trained.arguments) if trained else policies.modes(policy)
-        self._config, settings = configure(task, arguments.get("config"))  # type: ignore[arg-type]
+        preset = str(arguments.get("sensors") or "realistic")
+        self._config, settings = configure(task, arguments.get("config"), preset)  # type: ignore[arg-type]
         mode = str(arguments.get("action_mode") or task.action_mode)
         observed = str(arguments.get("observation_mode") or ("flat" if trained else "deviations"))
         self._history = trained.history if trained else 0
@@ -100,8 +106,18 @@ class PolicyPilot:
         source = "true" if read is None or "mu_c" in read else "none"
         self._columns = layout.columns(self._config, task, source, mode, observed, loaded)
         self._names = [column.name for column in self._columns]
+        if (kind := layout_of(self._config)) != "fingers":
+            own = [each.name for each in LAYOUTS[kind] if each not in layout.SENSORS]
+            raise ValueError(
+                f"the policy reads {', '.join(own[:6])}{', ...' * (len(own) > 6)}, of the sensors {kind!r}; "
+                "live takes readings of sensors in the fingers alone"
+            )
         if read is not None and tuple(self._names) != read:
-            raise ValueError("the policy was trained in another version of the environment's observation")
+            odd = sorted(set(read) ^ set(self._names)) or ["their order"]
+            raise ValueError(
+                "the policy was trained in another version of the environment's observation, which differs "
+                f"in {', '.join(odd)}"
+            )
         wrist = np.array(layout.wrist_part(task, mode), np.int64)
         sensors = len(layout.SENSORS)
         self._own = self._names[sensors : sensors + len(task.columns) + len(wrist)]
@@ -128,7 +144,7 @@ class PolicyPilot:
                 raise ValueError(unknown("observation column", name, self._given))
             number = isinstance(value, int | float) and not isinstance(value, bool)
             if not number or not abs(value) < LARGEST:
-                raise ValueError(f"column {name}: expected a finite number")
+                raise ValueError(f"column {name} = {shown(value)}: expected a finite number")
         self._given.update(values)
 
     def _begin(self, why: str) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import reprlib
 import time
 from collections import Counter
 from collections.abc import Callable, Sequence
@@ -12,9 +13,10 @@ from estimator.live.hand import Hand, Output
 from estimator.live.source import Source
 from estimator.online import TWIST, WRENCH, OnlineEstimator, make
 from estimator.registry import DEFAULT
-from estimator.suggestions import asking
+from estimator.suggestions import asking, brief
 
 CLOCKS = ("stamps", "arrival")
+TILT = ("tau_x", "tau_y")
 KINDS = {"wrench": "force", "twist": "velocity"}
 APART = 0.05
 """Difference of the clocks of a finger's sensors that is a warning [s]; networks delay by less."""
@@ -64,7 +66,7 @@ class Live:
         if not 0.0 <= lateness <= 1.0:
             raise ValueError(f"lateness = {lateness!r} s: expected 0 to 1")
         self.fingers, self.rates, self.grip = fingers, rates, math.nan
-        self._log = log or (lambda line: None)
+        self._log: Callable[[dict[str, Any]], None] = lambda line: None
         self._hands = {}
         for finger in range(1, fingers + 1):
             sources = {
@@ -72,8 +74,15 @@ class Live:
                 for (kind, what), rate in zip(KINDS.items(), rates, strict=True)
             }
             self._hands[finger] = Hand(finger, _ready(estimator, parameters), sources, lateness)
-        self._log({"live": 1, "estimator": estimator, "parameters": parameters, "rates": list(rates),
-                   "lateness": lateness, "clocks": clocks})  # fmt: skip
+        self._arguments = {"live": 1, "estimator": estimator, "parameters": parameters, "rates": list(rates),
+                           "lateness": lateness, "clocks": clocks}  # fmt: skip
+        if log is not None:
+            self.begin_log(log)
+
+    def begin_log(self, log: Callable[[dict[str, Any]], None]) -> None:
+        """Gives a log the arguments, and from now on each reading and each output."""
+        self._log = log
+        log(self._arguments)
 
     def feed_wrench(
         self, finger: int, stamp: float, wrench: Sequence[float], arrival: float | None = None
@@ -94,7 +103,7 @@ class Live:
         Raises:
             ValueError: There is no such finger, or the reading is not 4 or 6 numbers.
         """
-        return self._feed("wrench", finger, stamp, _numbers("wrench", wrench, (4, 6), WRENCH), arrival)
+        return self._feed("wrench", finger, stamp, _numbers("wrench", wrench, WRENCH, TILT), arrival)
 
     def feed_twist(
         self, finger: int, stamp: float, twist: Sequence[float], arrival: float | None = None
@@ -103,11 +112,11 @@ class Live:
 
         Send each sample once, and neither filtered nor interpolated. See `feed_wrench`.
         """
-        return self._feed("twist", finger, stamp, _numbers("twist", twist, (3,), TWIST), arrival)
+        return self._feed("twist", finger, stamp, _numbers("twist", twist, TWIST), arrival)
 
     def feed_grip(self, stamp: float, force: float, arrival: float | None = None) -> None:
         """Takes the grip force that the gripper itself reports or is commanded [N]; it is recorded."""
-        self.grip, stamp = _numbers("grip", [force, stamp], (2,), ("force", "stamp"))
+        self.grip, stamp = _number("grip", force, "N"), _number("t", stamp, "s")
         self._log({"grip": _plain(self.grip), "t": _plain(stamp), "arrival": _now(arrival)})
 
     def _feed(
@@ -116,8 +125,8 @@ class Live:
         arrival = _now(arrival)
         hand = self._hands.get(finger) if type(finger) is int else None
         if hand is None:
-            raise ValueError(f"finger = {finger!r}: expected one of {', '.join(map(str, self._hands))}")
-        (stamp,) = _numbers("stamp", [stamp], (1,), ("stamp",))
+            raise ValueError(f"finger = {shown(finger)}: expected one of {', '.join(map(str, self._hands))}")
+        stamp = _number("t", stamp, "s")
         source, outputs = hand.sources[kind], []
         verdict, t = source.judge(stamp, arrival, values, hand.done)
         source.counts["received"] += 1
@@ -202,13 +211,30 @@ def _plain(value: float) -> float | None:
     return value if math.isfinite(value) else None
 
 
-def _numbers(what: str, values: Any, widths: tuple[int, ...], names: Sequence[str]) -> list[float]:
-    """Floats, finite or not; null is a reading that failed."""
+def shown(value: Any) -> str:
+    """A value of a message, whatever it is, for an error: shortened, and lists in lists to a few levels."""
+    return brief(reprlib.repr(value))
+
+
+def _number(key: str, value: Any, unit: str) -> float:
+    """A float, finite or not; null is a reading that failed."""
+    try:
+        if not isinstance(value, str | bytes | bool):
+            return math.nan if value is None else float(value)
+    except (TypeError, ValueError, OverflowError):
+        pass
+    raise ValueError(f"{key} = {shown(value)}: expected a number [{unit}]")
+
+
+def _numbers(key: str, values: Any, names: Sequence[str], more: Sequence[str] = ()) -> list[float]:
+    """Floats, finite or not, of the names, or also of more; null is a reading that failed."""
     try:
         numbers = [math.nan if value is None else float(value) for value in values]
         text = any(isinstance(value, str | bytes | bool) for value in values)
     except (TypeError, ValueError, OverflowError):
         numbers, text = [], True
-    if text or len(numbers) not in widths:
-        raise ValueError(f"{what}: expected {' or '.join(map(str, widths))} numbers ({', '.join(names)})")
+    if text or len(numbers) not in {len(names), len(names) + len(more)}:
+        also = f", or {len(names) + len(more)}, with {', '.join(more)}" if more else ""
+        wanted = f"{len(names)} numbers, {', '.join(names)}{also}"
+        raise ValueError(f"{key} = {shown(values)}: expected {wanted}")
     return numbers

@@ -16,6 +16,12 @@ import numpy as np
 from estimator.records.reading import CONTACT
 from estimator.records.record import Array, Record, cop_of_tilt, wrench_at
 
+fcntl: Any
+try:
+    import fcntl
+except ImportError:  # Windows
+    fcntl = None
+
 _Part: TypeAlias = dict[str, tuple["array[float]", "array[float]"]]
 """Of "wrench" and "twist" the times and all values."""
 _LISTS = {"wrench": ["f_x", "f_y", "f_n", "tau", "tau_x", "tau_y"], "twist": ["v_x", "v_y", "omega"]}
@@ -24,6 +30,8 @@ _TYPES = {bool: "boolean", int: "integer", str: "string", list: "array", dict: "
 
 class Log:
     """A file that only grows, one JSON object a line; a kill costs at most the line being written.
+
+    Until it is closed no other log writes to the file, where files can be locked (not on Windows).
 
     Args:
         path: The file; if it exists, it is continued, without the rest of a broken last line.
@@ -34,7 +42,7 @@ class Log:
         why: What the operating system said of the last of them.
 
     Raises:
-        ValueError: There is a file that is no such log.
+        ValueError: There is a file that is no such log, or another log writes to it.
         OSError: It cannot be opened.
     """
 
@@ -45,8 +53,13 @@ class Log:
         if self.path.exists() and self.path.stat().st_size:
             next(read(self.path))
         self._file = self.path.open("ab+", buffering=0)
-        self._size = _whole(self._file)
-        self._file.truncate(self._size)
+        try:
+            _lock(self._file, self.path)
+            self._size = _whole(self._file)
+            self._file.truncate(self._size)
+        except BaseException:
+            self._file.close()
+            raise
 
     def __call__(self, line: dict[str, Any]) -> None:
         """Appends a line; it is with the operating system when this returns. A full disk stops no gripper."""
@@ -63,6 +76,18 @@ class Log:
     def close(self) -> None:
         """Closes the file."""
         self._file.close()
+
+
+def _lock(file: Any, path: Path) -> None:
+    """Locks an open file; closing it, or the end of the process, unlocks it."""
+    if fcntl is None:
+        return
+    try:
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        raise ValueError(f"{path}: another session writes this log; name another file, or end it") from None
+    except OSError:  # a file system without locks
+        pass
 
 
 def _whole(file: Any) -> int:

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from estimator.live.hand import Output
-from estimator.live.live import KINDS, Live, as_line
+from estimator.live.live import KINDS, Live, as_line, shown
 from estimator.live.log import Log
 
 LONGEST = 65536
@@ -37,6 +37,11 @@ class Session:
         self.live, self.pilot, self.malformed = live, pilot, Counter()
         self._log, self._second, self._errors = log, 0, 0
         self._looked, self._warnings = -math.inf, {}
+
+    def begin_log(self, log: Log) -> None:
+        """Writes errors, commands and what the core writes to a log from now on."""
+        self._log = log
+        self.live.begin_log(log)
 
     def take(self, text: bytes | str, now: float | None = None) -> list[dict[str, Any]]:
         """Answers one message.
@@ -65,10 +70,14 @@ class Session:
         keys = next((keys for keys in _FORMS if keys == set(message)), None)
         if keys is None:
             forms = "; ".join(", ".join(sorted(keys)) for keys in _FORMS)
-            raise ValueError(f"expected the keys of one form: {forms}")
+            raise ValueError(f"keys {shown(list(message))}: expected those of one form: {forms}")
         if "columns" in keys:
-            if self.pilot is None or not isinstance(message["columns"], Mapping):
-                raise ValueError("columns: expected a mapping, and a policy")
+            if self.pilot is None:
+                raise ValueError("columns: expected where a policy runs alone (--policy)")
+            if not isinstance(message["columns"], Mapping):
+                raise ValueError(
+                    f"columns = {shown(message['columns'])}: expected a mapping of names to numbers"
+                )
             self.pilot.set_columns(message["columns"])
         elif "grip" in keys:
             self.live.feed_grip(message["t"], message["grip"], now)

@@ -2,6 +2,9 @@
 
 import signal
 import threading
+from collections.abc import Callable
+from contextlib import ExitStack, closing
+from functools import cache
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Annotated, Any
@@ -69,7 +72,6 @@ def main(
         raise typer.BadParameter(f"{door!r}: expected udp, ros2 or rosbridge", param_hint="--door")
     if mcap is not None and log is None:
         raise typer.BadParameter("--mcap converts the log: give --log")
-    book = None
     try:
         if mcap is not None:
             if find_spec("mcap") is None:
@@ -78,22 +80,26 @@ def main(
         columns, pilot = parse_settings(column or (), "--column"), None
         if columns and policy is None:
             raise ValueError("--column is for a --policy")
-        book = None if log is None else Log(log)
         rates = force_rate, velocity_rate
-        live = Live(estimator, fingers, rates, lateness, clocks, book, **parse_settings(set_ or ()))
+        live = Live(estimator, fingers, rates, lateness, clocks, **parse_settings(set_ or ()))
         if policy is not None:
             from policies.live import PolicyPilot
 
             pilot = PolicyPilot(policy, live, task, columns, firm, timeout)
-        session = Session(live, pilot, book)
+        session = Session(live, pilot)
         if threading.current_thread() is threading.main_thread():
             signal.signal(signal.SIGTERM, signal.default_int_handler)  # of a service; as Ctrl-C
-        _serve(session, door, host, port, fingers, seconds)
+        with ExitStack() as files:
+
+            @cache
+            def begin() -> None:
+                """Opens the log; a start that fails before leaves it as it was."""
+                if log is not None:
+                    session.begin_log(files.enter_context(closing(Log(log))))
+
+            _serve(session, door, host, port, fingers, seconds, begin)
     except (ValueError, OSError, ModuleNotFoundError) as error:
         raise typer.BadParameter(str(error)) from error
-    finally:
-        if book is not None:
-            book.close()
     typer.echo(session.report())
     if mcap is not None and log is not None:
         from estimator.live.log import to_mcap
@@ -102,12 +108,17 @@ def main(
             typer.echo(f"{to_mcap(log, mcap)} messages: {mcap}")
 
 
-def _serve(session: Any, door: str, host: str, port: int | None, fingers: int, seconds: float | None) -> None:
+def _serve(
+    session: Any, door: str, host: str, port: int | None, fingers: int, seconds: float | None,
+    begin: Callable[[], None],
+) -> None:  # fmt: skip
+    """Serves until the end; `begin` is called once the door is open."""
     import time
 
     end = None if seconds is None else time.monotonic() + seconds
 
     def going() -> bool:
+        begin()
         return end is None or time.monotonic() < end
 
     from estimator.live import ros, udp
@@ -115,6 +126,7 @@ def _serve(session: Any, door: str, host: str, port: int | None, fingers: int, s
     try:
         if door == "udp":
             with udp.opened(host, udp.PORT if port is None else port) as socket:
+                begin()
                 address = "{}:{}".format(*socket.getsockname())
                 typer.echo(f"listening at {address} (UDP); Ctrl-C ends", err=True)
                 if host != "127.0.0.1":

@@ -17,7 +17,7 @@ import numpy as np
 from slipgym._numba.compiled import patience
 from slipgym.config.errors import unknown
 from slipgym.identification.log import Log
-from slipgym.identification.parameters import DEVIATION, START, values_of
+from slipgym.identification.parameters import DEVIATION, NAMES, START, values_of
 from slipgym.identification.rollout import CELLS, CHANNELS, FINE_CELLS, SUBSTEP, SURFACES, roll
 
 HUBER = 2.0
@@ -31,6 +31,8 @@ STARTS, KEPT = 64, 6
 """Points sampled from the prior, and those from which a fit of a pad without cells begins."""
 FAR = 3.0
 """Held-out residual over the noise from which the model does not fit the log [-]."""
+STRANGE = 4.0
+"""Distance from the prior, over its deviation, from which a value shows a fault of the log [-]."""
 STEP = 1e-3
 """Of the finite differences, over the prior's deviation [-]."""
 ITERATIONS = 15
@@ -74,6 +76,11 @@ class Result:
         """Held-out residual over the noise, of the readings where it is above `FAR`."""
         ratios = self.held_out / self.noise
         return {name: float(each) for name, each in zip(CHANNELS, ratios, strict=True) if each > FAR}
+
+    def strange(self) -> dict[str, float]:
+        """Distance from the prior over its deviation, of the parameters where it is above `STRANGE`."""
+        away = np.abs(self.point - START) / DEVIATION
+        return {name: float(each) for name, each in zip(NAMES, away, strict=True) if each > STRANGE}
 
 
 @dataclass(frozen=True)

@@ -11,13 +11,25 @@ from pathlib import Path
 import numpy as np
 
 from estimator.records.alignment import held
-from estimator.records.checks import OPPOSITE, check_rate, check_time, correlation
+from estimator.records.checks import (
+    OPPOSITE,
+    USUAL_FORCE,
+    USUAL_LEVER,
+    USUAL_SPEED,
+    check_rate,
+    check_time,
+    check_torque,
+    check_wrench,
+    correlation,
+)
 from estimator.records.columns import Columns
 from estimator.records.extras import extra
+from estimator.records.record import seconds
 from estimator.records.sources import read_sources
 from estimator.records.streams import of_one_finger, read_tables, stream
 from estimator.records.table import Table, listed
-from estimator.records.units import TIME, VELOCITY_TIME
+from estimator.records.units import TIME, UNITS, VELOCITY_TIME, likely_unit
+from estimator.suggestions import brief
 from slipgym.identification.rollout import CHANNELS
 
 COMMAND = "force"
@@ -28,9 +40,16 @@ SLIP = CHANNELS[4:]
 """Readings of the slip sensor, which may have times of their own."""
 LEAST_NOISE = np.array([1e-3, 1e-3, 1e-3, 1e-5, 1e-5, 1e-5, 1e-4])
 """Of each reading, in its SI unit: no sensor is more exact, whatever a log shows."""
-SHORTEST, LARGEST = 5.0, 1e4  # [s], in SI units
+SHORTEST = 5.0  # [s]
+LARGEST = {"N": 1e4, "N m": 1e4, "m/s": 5.0, "rad/s": 200.0}
+"""Largest number of each unit, beyond what a bench has."""
+_USUAL = {"N": USUAL_FORCE, "N m": USUAL_LEVER * USUAL_FORCE, "m/s": USUAL_SPEED, "rad/s": 3.0}
+_ALIKE = 5.0
+"""Ratio of the sizes of a motion and of what follows it, at most; noise makes less, by `OPPOSITE`."""
 RATES = (20.0, 2000.0)  # [Hz]
 ROWS_MAX = 200_000
+_AROUND = 5
+"""Rows before a gap, and after it, whose times are compared."""
 _INSIDE = 0.5
 """Share of the slip samples that must lie in the time of the forces."""
 
@@ -95,8 +114,9 @@ def read_log(path: str | os.PathLike[str], columns: Columns | None = None) -> Lo
 
     Raises:
         FileNotFoundError: There is no such file.
-        ValueError: A column is absent, not finite or of another sign than the motion's, or the time does not
-            go on in equal steps; the message names file, column, row and range.
+        ValueError: A column is absent, not finite, or of another unit or sign than a gripper's or the
+            motion's, or the time does not go on in equal steps; the message names file, column, row, value
+            and range.
         ModuleNotFoundError: An extra is not installed.
     """
     path, columns = Path(path), columns or Columns()
@@ -137,7 +157,10 @@ def read_log(path: str | os.PathLike[str], columns: Columns | None = None) -> Lo
     readings[:, :4] = values[:, 4:]
     if slip:
         readings[:, 4:] = _slip(slow, t, rate)
+    check_wrench(table.name, readings[:, :4], table.rows(np.arange(len(t))))
+    check_torque(table.name, readings[:, :4])
     _check_signs(path.name, values[:, 1:4], readings)
+    _check_sizes(path.name, values[:, :4], readings)
     if (negative := values[:, 0] < 0.0).any():
         raise ValueError(
             f"{path.name}: row {table.rows(np.flatnonzero(negative))[0]}: {COMMAND} must be >= 0 N"
@@ -198,12 +221,18 @@ def _numbers(table: Table, name: str) -> np.ndarray:
         cells = extra("pandas").to_numeric(table.frame[table.column(name).column], errors="coerce")
         if np.isfinite(numbers := cells.to_numpy(float)).all():
             raise ValueError(str(error)) from None
-    bad = ~(np.abs(numbers) <= LARGEST)
-    if bad.any():
-        row = table.rows(np.arange(len(numbers)))[int(np.argmax(bad))]
+    unit = next(iter(UNITS[name]))
+    k = int(np.argmax(np.abs(numbers))) if len(numbers) else 0  # the first that is no number, if one is none
+    if len(numbers) and not abs(numbers[k]) <= LARGEST[unit]:
+        found, ask = f"{numbers[k]:.4g} {unit}", ""
+        if np.isfinite(numbers[k]):
+            meant = likely_unit(name, abs(numbers[k]), _USUAL[unit])
+            ask = f"; in {meant}? `{name}: {{unit: {meant}}}` in the mapping says so"
+        else:
+            found = brief(table.frame[table.column(name).column].iloc[k])
         raise ValueError(
-            f"{table.name}: row {row}: {name} must be a finite number of at most {LARGEST:g} in SI units, "
-            "in each row"
+            f"{table.name}: row {table.rows(np.array([k]))[0]}: {name} must be a finite number of at most "
+            f"{LARGEST[unit]:g} {unit} in each row, is {found}{ask}"
         )
     return numbers
 
@@ -221,15 +250,46 @@ def _check_signs(file: str, motion: np.ndarray, readings: np.ndarray) -> None:
                 )
 
 
+def _check_sizes(file: str, moves: np.ndarray, readings: np.ndarray) -> None:
+    """Refuses a command (n,) or motion (n, 3), side by side, of another size than what follows it."""
+    for name, given, k in zip((COMMAND, *MOTION), moves.T, (2, 4, 5, 6), strict=True):
+        both = np.isfinite(readings[:, k])
+        if correlation(given, readings[:, k]) < OPPOSITE:
+            continue
+        sizes = {name: float(given[both].std()), CHANNELS[k]: float(readings[both, k].std())}
+        small, large = sorted(sizes, key=sizes.__getitem__)
+        if sizes[large] > _ALIKE * sizes[small]:
+            unit, meant = next(iter(UNITS[large])), likely_unit(large, sizes[large], sizes[small])
+            ask = f"convert {large} to {unit}, or correct its column"
+            if 1.0 <= _ALIKE * sizes[large] * UNITS[large][meant] / sizes[small] <= _ALIKE**2:
+                ask = f"{large} in {meant}? `{large}: {{unit: {meant}}}` in the mapping says so"
+            raise ValueError(
+                f"{file}: {name} goes along with {CHANNELS[k]}, but changes by {sizes[name]:.3g} where that "
+                f"changes by {sizes[CHANNELS[k]]:.3g} {unit} (standard deviations, at most {_ALIKE:g} times "
+                f"the other); {ask}"
+            )
+
+
 def _rate(table: Table, t: np.ndarray) -> float:
     if not 2 <= len(t) <= ROWS_MAX:
         raise ValueError(f"{table.name}: has {len(t)} rows; a log has 2 to {ROWS_MAX}")
     step = (t[-1] - t[0]) / (len(t) - 1)
-    off = np.abs(t - t[0] - step * np.arange(len(t))) > 0.5 * step
-    if not step > 0.0 or off.any():
+    off = t - t[0] - step * np.arange(len(t))
+    if not step > 0.0 or (np.abs(off) > 0.5 * step).any() or (_shifts(off) > 0.5 * step).any():
         steps = np.diff(t)
-        row = table.rows(np.array([np.argmax(np.abs(steps - np.median(steps))) + 1]))[0]
+        usual = np.median(steps)
+        k = int(np.argmax(np.abs(steps - usual)))
         raise ValueError(
-            f"{table.name}: row {row}: t must rise in equal steps; resample onto one clock first"
+            f"{table.name}: row {table.rows(np.array([k + 1]))[0]}: t = {seconds(t[k + 1])} s is "
+            f"{1e3 * steps[k]:.4g} ms after the row before, others {1e3 * usual:.4g} ms; "
+            "t must rise in equal steps; resample onto one clock first"
         )
     return float(1.0 / step)
+
+
+def _shifts(off: np.ndarray) -> np.ndarray:
+    """How far times are shifted from one row to the next, by medians that leave jitter out [s]."""
+    if len(off) < 2 * _AROUND:
+        return np.zeros(1)
+    level = np.median(np.lib.stride_tricks.sliding_window_view(off, _AROUND), axis=1)
+    return np.abs(level[_AROUND:] - level[:-_AROUND])

@@ -10,9 +10,9 @@ import numpy as np
 
 from slipgym.config import load
 from slipgym.contact.pressure import OUTER_RADII
-from slipgym.identification.fit import FAR, Result
+from slipgym.identification.fit import FAR, STRANGE, Result
 from slipgym.identification.motions import gains
-from slipgym.identification.parameters import NAMES, PARAMETERS, values_of
+from slipgym.identification.parameters import DEVIATION, NAMES, PARAMETERS, START, values_of
 from slipgym.identification.rollout import CHANNELS
 
 MATERIAL = "identified"
@@ -62,22 +62,46 @@ def overrides(result: Result) -> dict[str, Any]:
 def table(result: Result) -> str:
     """The parameters with their 90 % intervals, as Markdown."""
     lines = ["| parameter | value | 90 % interval | |", "|---|---|---|---|"]
-    values, interval = values_of(result.point), result.interval()
+    values, interval, strange = values_of(result.point), result.interval(), result.strange()
     for each, v, (low, high), shown in zip(PARAMETERS, values, interval, result.shown, strict=True):
         note = "" if shown else "this log does not show it: the prior"
+        if each.name in strange:
+            note = f"far from the prior {each.prior:g}"
         lines.append(f"| {each.name} [{each.unit}] | {v:.4g} | {low:.4g} to {high:.4g} | {note} |")
     return "\n".join(lines)
 
 
 def verdict(result: Result) -> str:
-    """Whether the model fits the log, in a sentence or two."""
-    if not (misfits := result.misfits()):
-        return f"The model fits this log: every held-out residual is within {FAR:g} times the noise."
-    far = ", ".join(f"{name} {ratio:.1f}" for name, ratio in misfits.items())
-    return (
-        f"The model does not fit this log: held-out residuals over the noise are {far}. "
-        "Trust neither the parameters nor their intervals."
+    """Whether the model fits the log, and which values are those of no gripper, in a few sentences."""
+    strange = _strange(result)
+    if misfits := result.misfits():
+        far = ", ".join(f"{name} {ratio:.1f}" for name, ratio in misfits.items())
+        doubt = (
+            f"The model does not fit this log: held-out residuals over the noise are {far}. "
+            "Trust neither the parameters nor their intervals."
+        )
+        return f"{doubt} Values of no usual gripper: {strange}" if strange else doubt
+    if strange:
+        return f"The model fits this log only with values of no usual gripper: {strange}"
+    return f"The model fits this log: every held-out residual is within {FAR:g} times the noise."
+
+
+def _strange(result: Result) -> str:
+    """Names the values that are far from their priors, and of what they are a sign; empty if none is."""
+    values, strange = dict(zip(NAMES, values_of(result.point), strict=True)), result.strange()
+    ends = values_of(START + STRANGE * DEVIATION * np.array([[-1.0], [1.0]])).T
+    lines = []
+    for each, (low, high) in zip(PARAMETERS, ends, strict=True):
+        if each.name in strange:
+            unit = "" if each.unit == "-" else f" {each.unit}"
+            lines.append(
+                f"{each.name} = {values[each.name]:.4g}{unit}, {strange[each.name]:.1f} deviations from the "
+                f"prior {each.prior:g}{unit} ({STRANGE:g} are {low:.2g} to {high:.2g}{unit})"
+            )
+    advice = (
+        "Is a unit, a sign, a zero or a column of the log wrong? Correct the mapping, and identify again."
     )
+    return f"{'; '.join(lines)}. {advice}" if lines else ""
 
 
 def summary(result: Result) -> str:

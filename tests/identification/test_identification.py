@@ -1,5 +1,6 @@
 """Logs of hidden grippers give their parameters back, and say what they do not show."""
 
+import re
 from dataclasses import replace
 
 import gymnasium as gym
@@ -14,7 +15,7 @@ from policies.commands.front import application
 from slipgym import identification
 from slipgym.config import load
 from slipgym.identification import Log, identify, read_log
-from slipgym.identification.parameters import NAMES, START, values_of
+from slipgym.identification.parameters import NAMES, PARAMETERS, START, values_of
 
 GRIPPER = draw_gripper(0)
 
@@ -117,6 +118,28 @@ def test_a_model_that_does_not_fit_is_told(log, tmp_path):
     assert done.output.rstrip().splitlines()[-1].startswith(told)
     for name in ("report.md", "gripper.yaml"):
         assert told in (tmp_path / "out" / name).read_text()
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "says"),
+    [
+        ("force gain", 0.232, r"force gain = 0.232, 14.6 deviations from the prior 1 \(4 are 0.67 to 1.5\)"),
+        ("zero f_n", -5.0, r"zero f_n = -5 N, 16.7 deviations from the prior 0 N \(4 are -1.2 to 1.2 N"),
+        ("lag", 0.9, r"lag = 0.9 s, 5.8 deviations from the prior 0.015 s"),
+        ("force gain", 1.4, ""),
+    ],
+)
+def test_a_value_of_no_gripper_is_named(result, name, value, says):
+    """As a command in percent gives: the model follows it, with a gain that no gripper has."""
+    k, point = NAMES.index(name), result.point.copy()
+    point[k] = np.log(value) if PARAMETERS[k].log else value
+    found = replace(result, point=point)
+    verdict, table = identification.verdict(found), identification.table(found)
+    assert verdict.startswith("The model fits this log:") == (not says)
+    assert re.search(says, verdict)
+    assert ("unit" in verdict) == bool(says)
+    (row,) = (line for line in table.splitlines() if line.startswith(f"| {name} ["))
+    assert ("far from the prior" in row) == bool(says)
 
 
 def test_a_log_without_slip_sensor_leaves_its_latency_alone(log):

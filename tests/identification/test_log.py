@@ -114,3 +114,68 @@ def test_motion_and_command_of_another_table_may_begin_later_and_end_earlier(log
     read = read_log(tmp_path / "log.h5")
     assert len(log.command) - 95 < len(read.command) < len(log.command) - 80
     np.testing.assert_allclose(read.readings[0], log.readings[50], atol=1e-8)
+
+
+UNITS_WRONG = [
+    ("f_n", -1.0, r"f_n is negative throughout \(median .* N\).*`f_n: \{sign: -1\}`"),
+    ("f_n", 1e3, r"row \d+: f_n must be .* of at most 10000 N in each row, is \S+ N; in mN\? `f_n"),
+    ("tau", 1e3, r"tau reaches .* N m .*; in N mm\?"),
+    ("force", 4e2, r"force goes along with f_n, but changes by .* N .*`force: \{unit: mN\}`"),
+    ("force", 12.75, r"force goes along with f_n, but changes by .* N .*convert force to N"),
+    ("motion_x", 1e3, r"row \d+: motion_x must be .* of at most 5 m/s in each row, is .* m/s; in mm/s\?"),
+    ("motion_x", 1e2, r"motion_x goes along with v_x, but changes by .* m/s .*`motion_x: \{unit: cm/s\}`"),
+    ("motion_omega", 57.3, r"motion_omega goes along with omega.*`motion_omega: \{unit: deg/s\}`"),
+    ("v_x", 1e2, r"motion_x goes along with v_x, but changes by .* m/s .*`v_x: \{unit: cm/s\}`"),
+    ("omega", 57.3, r"motion_omega goes along with omega.*`omega: \{unit: deg/s\}`"),
+]
+
+
+@pytest.fixture(scope="module")
+def turned():
+    return simulated_log(draw_gripper(0), names=("press", "slide and squeeze"))
+
+
+@pytest.mark.parametrize(("key", "factor", "message"), UNITS_WRONG)
+def test_a_wrong_unit_or_sign_is_refused_with_value_and_unit(turned, tmp_path, key, factor, message):
+    pandas = pytest.importorskip("pandas")
+    write_log(turned, tmp_path / "log.csv")
+    frame = pandas.read_csv(tmp_path / "log.csv")
+    frame[key] *= factor
+    frame.to_csv(tmp_path / "log.csv", index=False)
+    with pytest.raises(ValueError, match=rf"log\.csv: {message}"):
+        read_log(tmp_path / "log.csv")
+
+
+def test_a_motion_without_a_slip_sensor_has_a_bound_of_its_own(turned, tmp_path):
+    pandas = pytest.importorskip("pandas")
+    write_log(turned, tmp_path / "log.csv")
+    frame = pandas.read_csv(tmp_path / "log.csv").drop(columns=SLIP)
+    frame["motion_y"] *= 1e3
+    frame.to_csv(tmp_path / "log.csv", index=False)
+    with pytest.raises(ValueError, match=r"motion_y must be .* of at most 5 m/s"):
+        read_log(tmp_path / "log.csv")
+
+
+@pytest.mark.parametrize("cut", [100, 550, 599, 600, 601, 1100])
+def test_a_missing_row_is_refused_wherever_it_is(log, tmp_path, cut):
+    pandas = pytest.importorskip("pandas")
+    write_log(log, tmp_path / "log.csv")
+    frame = pandas.read_csv(tmp_path / "log.csv")
+    assert len(frame) == 1200
+    frame.drop(index=[cut]).to_csv(tmp_path / "log.csv", index=False)
+    with pytest.raises(
+        ValueError, match=rf"row {cut + 1}: t = .* s is 16.67 ms after .* 8.333 ms.*equal steps"
+    ):
+        read_log(tmp_path / "log.csv")
+
+
+@pytest.mark.parametrize("way", ["jitter", "rounded"])
+def test_stamps_that_are_not_exact_are_no_missing_rows(log, tmp_path, way):
+    pandas = pytest.importorskip("pandas")
+    write_log(log, tmp_path / "log.csv")
+    frame = pandas.read_csv(tmp_path / "log.csv")
+    frame["t"] = frame.t.round(3) if way == "rounded" else frame.t
+    if way == "jitter":
+        frame["t"] += np.random.default_rng(0).normal(0.0, 1e-3, len(frame))
+    frame.to_csv(tmp_path / "log.csv", index=False)
+    assert read_log(tmp_path / "log.csv").rate == pytest.approx(log.rate, rel=1e-3)

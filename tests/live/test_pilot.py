@@ -1,5 +1,8 @@
 """A policy behind live estimates acts as it does in its environment, and holds firmly when anything fails."""
 
+import json
+import shutil
+
 import gymnasium as gym
 import numpy as np
 import pytest
@@ -8,7 +11,9 @@ import policies
 from estimator.live import Live
 from estimator.live.session import Session
 from lab.live_streams import readings
+from policies.learned.pretrained import folders
 from policies.live import AGAIN, PolicyPilot
+from slipgym.tasks import find
 
 TIMED = ("time_left", "violated")
 WRIST = ("wrist_velocity_x", "wrist_velocity_z", "wrist_pitch_rate")
@@ -224,3 +229,35 @@ def test_a_rate_that_is_no_multiple_is_refused_with_those_that_are(rate):
     live = Live("rls", rates=(1000.0, rate))
     with pytest.raises(ValueError, match=rf"60, 120, 180, 240, \.\.\. Hz\), not at {rate:g} Hz"):
         PolicyPilot("hold_scratch", live, columns={"time_left": 4.0})
+
+
+@pytest.mark.parametrize("name", folders())
+def test_every_policy_that_comes_with_slipgym_starts_or_is_refused_by_what_it_reads(name):
+    """It asks for columns of its task; with these it acts."""
+    own = {column.name for column in find(policies.load(name).description.environment.id).columns}
+    with pytest.raises(ValueError, match=r"give it, of the columns |of the sensors 'wrist'; live") as refused:
+        session(name, timeout=1.0)
+    if name == "carry_wrist":
+        return
+    names = str(refused.value).partition("of the columns ")[2].split(", ")
+    assert set(names) <= own
+    found = session(name, timeout=1.0, columns=dict.fromkeys(names, 0.0))
+    assert play(found, seconds=0.3)[-1]["status"] == "ok"
+
+
+@pytest.mark.parametrize(
+    ("sensors", "config", "says"),
+    [
+        ("wrist", {}, "reads wrist_f_x, wrist_f_y, wrist_tau, motor_force, opening, of the sensors 'wrist'"),
+        ("motor", {}, "reads motor_force, opening, of the sensors 'motor'"),
+        ("markers", {"sensors": {"markers": {"observed": True}}}, r"reads marker_x_0_1, .*, \.\.\., of the"),
+    ],
+)
+def test_a_policy_of_other_sensors_is_refused_by_what_it_reads(sensors, config, says, tmp_path):
+    path = tmp_path / "policy" / "policy.json"
+    shutil.copytree(folders()["carry_wrist"], path.parent)
+    content = json.loads(path.read_text())
+    content["environment"]["arguments"] |= {"sensors": sensors, "config": config}
+    path.write_text(json.dumps(content))
+    with pytest.raises(ValueError, match=f"{says}.* live takes .* the fingers alone"):
+        session(str(path.parent))

@@ -56,6 +56,38 @@ def test_garbage_is_refused_answered_and_counted(garbage):
     assert sum(session.malformed.values()) == 1
 
 
+@pytest.mark.parametrize(
+    ("message", "says"),
+    [
+        ({"finger": 1, "t": "0", "twist": [0, 0, 0]}, "t = '0': expected a number [s]"),
+        ({"t": [1], "grip": 8.0}, "t = [1]: expected a number [s]"),
+        ({"t": 0.0, "grip": "hard"}, "grip = 'hard': expected a number [N]"),
+        ({"t": 0.0, "grip": True}, "grip = True: expected a number [N]"),
+        ({"finger": 1, "t": 0.0, "twist": [0, "a"]}, "twist = [0, 'a']: expected 3 numbers, v_x, v_y, omega"),
+        (
+            {"finger": 1, "t": 0.0, "wrench": 5},
+            "wrench = 5: expected 4 numbers, f_x, f_y, f_n, tau, or 6, with tau_x, tau_y",
+        ),
+        ({"finger": "1", "t": 0.0, "twist": [0, 0, 0]}, "finger = '1': expected one of 1, 2"),
+        ({"finger": 1, "t": 0.0}, "keys ['finger', 't']: expected those of one form: finger, t, wrench; "),
+    ],
+)
+def test_an_error_names_the_key_of_the_message_and_its_value(message, says):
+    (answer,) = Session(Live("rls")).give(message, 0.0)
+    assert answer["error"].startswith(says)
+
+
+@pytest.mark.parametrize("key", ["finger", "t", "twist"])
+def test_an_error_of_any_depth_is_an_answer(key):
+    """At any depth that the parser takes, up to where it gives up."""
+    session = Session(Live("rls"))
+    for depth in range(1, 1100):
+        message = {"finger": "1", "t": "0", "twist": "[0, 0, 0]"} | {key: "[" * depth + "]" * depth}
+        message = ", ".join(f'"{name}": {value}' for name, value in message.items())
+        assert all("error" in answer for answer in session.take(f"{{{message}}}", 0.0))
+    assert sum(session.malformed.values()) == depth
+
+
 @given(st.binary(max_size=200) | st.recursive(
     st.none() | st.booleans() | st.integers() | st.floats() | st.text(max_size=5),
     lambda inner: st.lists(inner, max_size=6)
