@@ -61,13 +61,18 @@ def of_frame(frame: Any) -> Table:
     return Table(frame.set_axis(names, axis=1), names)
 
 
-def read_columns(path: Path) -> dict[str, Any]:
-    """All columns of a file, by name; those of different topics or arrays may have different lengths."""
+def read_columns(path: Path) -> tuple[dict[str, Any], dict[str, list[str]]]:
+    """All columns of a file, by name, and the texts that state their units.
+
+    Columns of different topics or arrays may have different lengths.
+    """
     found: dict[str, Any] = {}
+    stated: dict[str, list[str]] = {}
     for table in read_sources(path, None):
         for name in table.frame.columns:
             found.setdefault(name, table.frame[name])
-    return found
+            stated.setdefault(name, table.stated(name))
+    return found, stated
 
 
 def _of_arrays(

@@ -84,6 +84,15 @@ def test_velocities_of_another_clock_are_refused(log, tmp_path, change, message)
         read_log(rows_between(log, change(own), tmp_path))
 
 
+def test_a_command_of_an_unknown_unit_is_refused(log, tmp_path):
+    write_log(log, tmp_path / "log.csv")
+    (tmp_path / "mapping.yaml").write_text("force: 'force [%]'")
+    text = (tmp_path / "log.csv").read_text()
+    (tmp_path / "log.csv").write_text(text.replace("force", "force [%]", 1))
+    with pytest.raises(ValueError, match=r"force \[%\]: unknown unit '%'; .*`force: \{scale: …\}`"):
+        read_log(tmp_path / "log.csv", load_columns(tmp_path / "mapping.yaml"))
+
+
 def test_a_refusal_names_the_row_of_the_file(log, tmp_path):
     pandas = pytest.importorskip("pandas")
     write_log(log, tmp_path / "whole.csv")
