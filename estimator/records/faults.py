@@ -80,15 +80,16 @@ def _own_force(record: Record) -> list[str]:
 
 def _dead(record: Record) -> list[str]:
     """Channels that have one value from the first to the last sample, while others have not."""
-    streams = {"force": (WRENCH, record.wrench), "velocity": (TWIST, record.twist)}
+    force = record.wrench if record.cop is None else record.wrench[:, :3]  # a torque that was moved is mixed
+    streams = {"force": (WRENCH, force), "velocity": (TWIST, record.twist)}
     lines = []
     for what, (names, values) in streams.items():
         still = (values == values[0]).all(axis=0)
         if still.all() and values[0].any() and not (what == "velocity" and _steady(record)):
             lines.append(f"no {what} ever changes: is the sensor frozen, or not connected?")
-        elif record.cop is None or what == "velocity":
-            dead = [name for name, value, is_ in zip(names, values[0], still, strict=True) if is_ and value]
-            if dead and what == "force":
+        elif what == "force":
+            dead = [name for name, value, is_ in zip(names, values[0], still, strict=False) if is_ and value]
+            if dead:
                 lines.append(f"{', '.join(dead)} never changes: is it frozen, or not connected?")
     return lines
 

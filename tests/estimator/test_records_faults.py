@@ -107,6 +107,18 @@ def test_a_channel_that_is_frozen_from_the_beginning_is_told(table, change, mess
     assert message in told(frozen)
 
 
+@pytest.mark.parametrize("way", [("cop_x", "cop_y"), ("tau_x", "tau_y")])
+def test_a_frozen_force_is_named_beside_a_cop_that_moves(table, way):
+    """The CoP changes the torque alone."""
+    there = 0.0 * table["f_n"]
+    moving = table.assign(**{name: there + 1e-3 * np.sin(table["t"]) for name in way})
+    assert told(moving) == ""
+    assert "f_n never changes" in told(moving.assign(f_n=5.0 + there))
+    still = {"f_x": 0.3, "f_y": 1.0, "f_n": 5.0, "tau": 0.01}
+    line = told(moving.assign(**{name: value + there for name, value in still.items()}))
+    assert "no force ever changes" in line
+
+
 @pytest.mark.parametrize("offset", [0.05, -0.06, 0.2, -0.4])
 def test_two_clocks_are_told(offset, mapping):
     """The shipped record's velocities are one to two samples late by their sensor."""
