@@ -62,7 +62,8 @@ def from_arrays(
 
     Args:
         forces: Name -> array (n,), or a pandas.DataFrame, with time and forces and, unless `velocities` is
-            given, velocities. Names, units and signs are as in a file: `t` [s], `f_x`, ... [N].
+            given, velocities. Names, units and signs are as in a file: `t` [s], `f_x`, ... [N]. A masked
+            cell is an empty one.
         velocities: The same for velocities at times of their own, (m,).
         columns: The mapping; None for the default.
         name: What messages and reports call it.
@@ -85,7 +86,10 @@ def _of_memory(given: Mapping[str, Any] | Any, name: str, wanted: Wanted) -> lis
         kind = brief(type(given).__name__)
         raise ValueError(f"{name}: must be a mapping of names to arrays or a DataFrame, got {kind}")
     try:
-        arrays = {str(key): np.asarray(values) for key, values in given.items()}
+        arrays = {
+            str(key): values if isinstance(values, np.ma.MaskedArray) else np.asarray(values)
+            for key, values in given.items()
+        }
     except ValueError as error:
         raise ValueError(f"{name}: cannot be read: {brief(error, 300)}") from error
     shapes = {key: values.shape for key, values in arrays.items()}
