@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from estimator.records.cells import numbers, times
-from estimator.records.checks import OPPOSITE, correlation
+from estimator.records.checks import OPPOSITE, correlation, likely_time
 from estimator.records.extras import extra
 from estimator.records.record import Array
 from estimator.records.sources import read_columns
@@ -253,9 +253,11 @@ def _unit(
     if key in (TIME, VELOCITY_TIME):
         step = float(np.median(np.abs(np.diff(np.unique(x))))) if len(x) > 1 else 0.0
         rates = {unit: 1.0 / (step * factor) for unit, factor in units.items()} if step else {}
-        likely = [unit for unit, rate in rates.items() if RATES[0] <= rate <= RATES[1]]
-        unit = stated or (likely[0] if likely else "s")
-        return unit, 1, f"{rates[unit]:.4g} Hz" if rates else "one time"
+        likely = likely_time(np.unique(x), units) if rates else []
+        fast = [unit for unit, rate in rates.items() if RATES[0] <= rate <= RATES[1]]
+        first, *others = [stated] if stated else likely or fast or ["s"]
+        too = "".join(f"; {rates[unit]:.5g} Hz if it is in {unit}" for unit in others if unit in likely)
+        return first, 1, f"{rates[first]:.5g} Hz{too}" if rates else "one time"
     size = max(float(np.nanpercentile(np.abs(each), 99)) for each in alike)
     most = LIKELY["omega"] if key.endswith("omega") else LIKELY["v"] if "m/s" in units else np.inf
     if "N" in units:
