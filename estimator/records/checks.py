@@ -53,6 +53,11 @@ def check_time(source: str, t: Array, rows: Rows, what: str) -> None:
         how, advice = "goes back from", "sort the record"
         if step[k] == 0.0:
             how, advice = "repeats", _REPEATED
+        elif (step <= 0.0).all():
+            advice = (
+                "the time runs backwards throughout: sort the record by it, or, if its clock counts down, "
+                "state `sign: -1` of its column in the mapping"
+            )
         elif t[k + 1] <= t[0]:
             advice = "where a counter wraps or a second record begins, make two files"
         raise ValueError(

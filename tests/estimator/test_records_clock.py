@@ -62,6 +62,15 @@ def test_milliseconds_since_1970_are_asked_for():
         records.from_arrays(log(0.0625, 3001, start=1.7e12))
 
 
+def test_rows_in_reverse_order_are_no_counter_that_wraps(mapping):
+    turned = {name: values[::-1] for name, values in log(0.001, 300).items()}
+    with pytest.raises(ValueError, match=r"row 2: .* time runs backwards throughout: sort .*sign: -1") as why:
+        records.from_arrays(turned)
+    assert "wraps" not in str(why.value)
+    down = records.from_arrays(turned, None, mapping("t: {sign: -1}"))
+    assert np.ptp(down.force_t) == pytest.approx(0.299)
+
+
 @pytest.mark.parametrize(("count", "unit"), [(300, "'s'"), (3001, "'s'"), (65_001, "'ms'")])
 def test_the_proposal_is_the_likely_unit(save, count, unit):
     pandas = pytest.importorskip("pandas")
