@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 from estimator._numba.caching import njit
 from estimator._numba.entry_point import entry_point
 from estimator.limit_surface.inverse import slip_factors, spin_radius
-from estimator.parameters import parameter
+from estimator.parameters import RADIUS, parameter
 from estimator.registry import FilterMatrices, Specification
 from estimator.sample import clamped, count_mu_c, count_r, norm
 from estimator.sliding import SLIDING_STATE, SlidingParameters, close_sample, open_sample, slides, spins
@@ -48,7 +48,7 @@ class JointParameters(SlidingParameters):
         0.2, "Spread of the viscous friction, about zero, before it is seen.", "(0, inf)", "s/m"
     )
     sd_mu_c0: float = parameter(1.0, "Standard deviation of mu_c0.", "(0, inf)")
-    sd_r0: float = parameter(0.01, "Standard deviation of r0.", "(0, inf)", "m")
+    sd_r0: float = parameter(0.01, "Standard deviation of r0.", RADIUS, "m")
 
 
 STATE = np.dtype(

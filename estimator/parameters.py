@@ -17,6 +17,11 @@ _KINDS = {
 """Field type -> accepted value types and the words for them; an int field does not accept a bool."""
 
 
+RADIUS = "(0, 0.2]"
+"""Valid interval of a contact's radius [m]: the pads of the largest grippers are 0.2 m wide, so that it holds
+twice what is needed and refuses one in mm or cm."""
+
+
 def parameter(default: float | int | bool | str, doc: str, within: str = "", unit: str = "") -> Any:
     """Declares a parameter field.
 

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from estimator._numba.caching import njit
 from estimator._numba.entry_point import entry_point
-from estimator.parameters import parameter
+from estimator.parameters import RADIUS, parameter
 from estimator.registry import FilterMatrices, Specification
 from estimator.sample import clamped, count_mu_c, count_r, direction_cosines, norm, publish, readable
 from estimator.stick_slip import (
@@ -45,10 +45,8 @@ class RlsParameters(StickSlipParameters):
     heuristic: bool = parameter(
         True, "Whether a fast rise of f_n halts all updates; False is the plain estimator."
     )
-    r0: float = parameter(0.02, "Start value of r.", "(0, inf)", "m")
-    r_max: float = parameter(
-        0.1, "r is kept at or below this, for example the pad's radius.", "(0, inf)", "m"
-    )
+    r0: float = parameter(0.02, "Start value of r.", RADIUS, "m")
+    r_max: float = parameter(0.1, "r is kept at or below this, for example the pad's radius.", RADIUS, "m")
     eps_tau: float = parameter(0.3, "Gate: gamma_tau above which r learns.", "(0, 1)")
     p0: float = parameter(1.0, "Start value P0 of both RLS covariances.", "(0, inf)", "1/N^2")
     covariance_limit: float = parameter(

@@ -16,7 +16,7 @@ import numpy as np
 from estimator._numba.caching import njit
 from estimator.limit_surface import DISC_RADIUS
 from estimator.limit_surface.inverse import load_size
-from estimator.parameters import parameter
+from estimator.parameters import RADIUS, parameter
 from estimator.sample import direction_cosines, norm, publish, readable
 from estimator.stick_slip import (
     BUFFER_CAPACITY,
@@ -57,10 +57,8 @@ class SlidingParameters(StickSlipParameters):
     heuristic: bool = parameter(
         False, "Whether a fast rise of f_n halts all updates; the test of sliding makes it unnecessary."
     )
-    r0: float = parameter(
-        0.01, "Start value of r: that of a uniform disc as large as the pad.", "(0, inf)", "m"
-    )
-    r_max: float = parameter(0.015, "Radius of the pad: r is kept at or below this.", "(0, inf)", "m")
+    r0: float = parameter(0.01, "Start value of r: that of a uniform disc as large as the pad.", RADIUS, "m")
+    r_max: float = parameter(0.015, "Radius of the pad: r is kept at or below this.", RADIUS, "m")
     n_a: int = parameter(
         1, "How many of the largest buffered ratios are averaged to mu_s.", f"[1, {BUFFER_CAPACITY}]"
     )

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from estimator._numba.caching import njit
 from estimator.estimate import COMMON_STATE
-from estimator.parameters import Parameters, parameter
+from estimator.parameters import RADIUS, Parameters, parameter
 from estimator.sample import clamped
 
 BUFFER_CAPACITY = 64
@@ -35,7 +35,7 @@ class StickSlipParameters(Parameters):
     mu_s0: float = parameter(1.5, "Start value of mu_s.", "(0, inf)")
     mu_min: float = parameter(0.01, "mu_s and mu_c are kept at or above this.", "(0, inf)")
     mu_max: float = parameter(10.0, "mu_s and mu_c are kept at or below this.", "(0, inf)")
-    r_min: float = parameter(1e-4, "r is kept at or above this.", "(0, inf)", "m")
+    r_min: float = parameter(1e-4, "r is kept at or above this.", RADIUS, "m")
     eps_fn: float = parameter(0.2, "Normal force from which there is contact.", "(0, inf)", "N")
     eps_v: float = parameter(
         1.5e-3, "Scaled speed above which the motion regime holds and a slip starts.", "(0, inf)", "m/s"

@@ -78,7 +78,7 @@ class _Topic:
         frame["t_log"] = logged
         if not frame["t"].is_monotonic_increasing:
             frame = frame.sort_values("t", kind="stable", ignore_index=True)
-        return Table(frame, ["t", "t_log", *self._names])
+        return Table(frame, ["t", "t_log", *self._names], joints=True)
 
     def _asks(self, path: str) -> bool:
         full = f"{self._name}.{path}"

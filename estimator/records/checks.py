@@ -5,7 +5,7 @@ The bounds are an order of magnitude beyond the finger of a gripper, so every pl
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -13,7 +13,7 @@ import numpy as np
 from estimator.online import TWIST, WRENCH
 from estimator.records.columns import Column
 from estimator.records.record import Array, Rows, seconds
-from estimator.records.units import ROWS, UNITS, likely_unit
+from estimator.records.units import ROWS, TIME, UNITS, likely_unit
 
 _FORCE_MAX = 500.0  # median force [N]
 _FORCE_PEAK = 2e4  # [N]
@@ -29,6 +29,10 @@ OPPOSITE = 0.3
 _PERIODS = (1e-5, 1.0)  # [s]
 _USUAL_PERIODS = (4e-5, 0.105)
 """Sample periods, 10 Hz to 25 kHz, for which seconds need not be stated [s]."""
+_SPANS = 0.1, 3600.0
+"""Shortest and longest likely record [s]: too short for a slip, and an hour."""
+_SINCE_1970 = 1.2e9, 2.2e9
+"""Seconds of a clock that counts from 1970, in 2008 to 2039."""
 
 _REPEATED = (
     f"if its rows are of two fingers, `{ROWS}: {{finger: 1}}` in the mapping keeps those with 1 in a column "
@@ -49,6 +53,11 @@ def check_time(source: str, t: Array, rows: Rows, what: str) -> None:
         how, advice = "goes back from", "sort the record"
         if step[k] == 0.0:
             how, advice = "repeats", _REPEATED
+        elif (step <= 0.0).all():
+            advice = (
+                "the time runs backwards throughout: sort the record by it, or, if its clock counts down, "
+                "state `sign: -1` of its column in the mapping"
+            )
         elif t[k + 1] <= t[0]:
             advice = "where a counter wraps or a second record begins, make two files"
         raise ValueError(
@@ -57,8 +66,11 @@ def check_time(source: str, t: Array, rows: Rows, what: str) -> None:
         )
 
 
-def check_rate(source: str, t: Array, what: str, key: str, column: Column | None) -> None:
+def check_rate(source: str, t: Array, what: str, key: str, column: Column | None) -> list[str]:
     """Refuses sample rates that no sensor of slip has, and unusual ones if the unit is not stated.
+
+    Returns:
+        The units in which the rate is usual, if neither unit nor scale is stated; else none.
 
     Args:
         source: Name of the file.
@@ -70,16 +82,56 @@ def check_rate(source: str, t: Array, what: str, key: str, column: Column | None
     period = float(np.median(np.diff(t)))
     least, most = _USUAL_PERIODS if column is not None and column.assumed else _PERIODS
     if least <= period <= most:
-        return
+        unstated = column is not None and column.assumed and abs(column.factor) == 1.0
+        return _usual(period, UNITS[key]) if unstated else []
     message = f"{source}: {what} samples are {period:.4g} s apart"
     if column is None:
         raise ValueError(f"{message}; is that the time at which they were taken?")
     counts, units = period / abs(column.factor), UNITS[key]
-    meant = [unit for unit in units if _USUAL_PERIODS[0] <= counts * units[unit] <= _USUAL_PERIODS[1]]
+    meant = _usual(counts, units)
     says = f"`{key}: {{unit: {(meant or ['…'])[0]}}}` in the mapping says so"
     ask = f"is the time in {meant[0]}? {says}" if meant else f"convert it to {', '.join(units)}; {says}"
     right = f"; if it is in {column.unit}, `{key}: {{unit: {column.unit}}}`"
     raise ValueError(f"{message}; {ask}{right if _PERIODS[0] <= period <= _PERIODS[1] else ''}")
+
+
+def _usual(period: float, units: Mapping[str, float]) -> list[str]:
+    """The units in which a period is that of a usual sample rate."""
+    return [unit for unit in units if _USUAL_PERIODS[0] <= period * units[unit] <= _USUAL_PERIODS[1]]
+
+
+def likely_time(t: Array, units: Mapping[str, float]) -> list[str]:
+    """The units in which increasing times (n,) have a usual rate and length, or are those of a clock."""
+    usual, span = _usual(float(np.median(np.diff(t))), units), t[-1] - t[0]
+    dated = [unit for unit in usual if _SINCE_1970[0] <= t[0] * units[unit] <= _SINCE_1970[1]]
+    return dated or [unit for unit in usual if _SPANS[0] <= span * units[unit] <= _SPANS[1]]
+
+
+def check_time_unit(source: str, t: Array, usual: Sequence[str]) -> str:
+    """Refuses a time without a unit that is far more likely in another one than seconds.
+
+    Args:
+        source: Name of the file.
+        t: Of the forces, (n,) [s], if the time is in seconds.
+        usual: Units in which the rates of all streams on this clock are usual.
+
+    Returns:
+        A warning, if seconds and another unit are both likely; else an empty text.
+    """
+    likely = likely_time(t, {unit: UNITS[TIME][unit] for unit in usual})
+    if len(usual) < 2 or likely in ([], usual[:1]):
+        return ""
+    step, span = float(np.median(np.diff(t))), t[-1] - t[0]
+    each = (
+        f"in {unit} the forces have {1.0 / (step * factor):.5g} Hz for {span * factor:.3g} s"
+        for unit, factor in UNITS[TIME].items()
+        if unit in usual
+    )
+    says = " or ".join(f"`{TIME}: {{unit: {unit}}}`" for unit in usual)
+    message = f"the unit of {TIME} is not stated: {', '.join(each)}; {says} in the mapping says which"
+    if usual[0] not in likely:
+        raise ValueError(f"{source}: {message}")
+    return f"{message}; it is read in {usual[0]}."
 
 
 def check_wrench(source: str, wrench: Array, rows: Rows) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from estimator.online import TWIST, WRENCH
 from estimator.records.alignment import Samples, newest, period
@@ -14,7 +15,11 @@ _FORCE = 0.3
 """Force above noise and zero errors [N]."""
 _FRICTION = 3.0
 """Largest friction coefficient of a fingertip."""
-_ENOUGH = 20  # samples
+_ZERO = 0.1
+"""Usual zero error of a normal force [N]."""
+_FEW, _PART_OF_SLIP = 5, 0.05
+"""Samples, and their share of the slip, in which a force is no single peak."""
+ENOUGH = 20  # samples
 _LATEST, _EARLIEST = 5, -1
 """Delays of the velocity that a sensor may have, and that "adaptive" looks for [samples]."""
 _FARTHEST = 0.5
@@ -49,16 +54,29 @@ def _zeroed(record: Record, samples: Samples) -> list[str]:
             f"with the open gripper, or add the grip that it had then by `f_n: {{offset: …}}`: {-low:.3g} N "
             "or more, which the readings do not show. A smaller one leaves friction too large."
         ]
-    slides = (np.hypot(*samples.twist[:, :2].T) > _SLIDES) & (force > _FORCE)
-    if np.count_nonzero(slides) < _ENOUGH:
+    loaded = slides(samples) & (force > _FORCE)
+    if np.count_nonzero(loaded) < ENOUGH:
         return []
-    pressed = np.maximum(samples.wrench[slides, 2], 1e-9)
-    if (ratio := float(np.median(force[slides] / pressed))) > _FRICTION:
+    force, pressed = force[loaded], samples.wrench[loaded, 2]
+    if (ratio := float(np.median(force / np.maximum(pressed, 1e-9)))) > _FRICTION:
         return [
             f"in slip the tangential force is {min(ratio, 999.0):.3g} times f_n, more than friction can be: "
             "was f_n zeroed in the grip? Zero it with the open gripper; `f_n: {offset: …}` adds a force."
         ]
+    noise = float(np.median(np.abs(np.diff(f_n)))) / 0.95  # of a difference of two samples
+    lacks = force > _FRICTION * (pressed + _ZERO + 3.0 * noise)
+    if np.count_nonzero(lacks) >= max(_FEW, _PART_OF_SLIP * len(lacks)):
+        return [
+            f"in {100.0 * lacks.mean():.0f} % of the slip f_n is less than a third of the tangential force, "
+            f"down to {pressed.min():.3g} N, and no friction is so large: was f_n zeroed in the grip? Zero "
+            "it with the open gripper; `f_n: {offset: …}` adds a force."
+        ]
     return []
+
+
+def slides(samples: Samples) -> NDArray[np.bool_]:
+    """Finds the samples that slip along the pad faster than noise and counts, (m,)."""
+    return np.hypot(*samples.twist[:, :2].T) > _SLIDES
 
 
 def _own_force(record: Record) -> list[str]:
@@ -67,7 +85,7 @@ def _own_force(record: Record) -> list[str]:
         return []
     f_n = record.wrench[:, 2]
     pressed = np.isfinite(record.grip) & ((record.grip > 1.0) | (f_n > 1.0))
-    if np.count_nonzero(pressed) < _ENOUGH:
+    if np.count_nonzero(pressed) < ENOUGH:
         return []
     own, measured = float(np.median(record.grip[pressed])), float(np.median(f_n[pressed]))
     if abs(own - measured) <= 0.3 * max(abs(own), abs(measured)):
@@ -80,15 +98,16 @@ def _own_force(record: Record) -> list[str]:
 
 def _dead(record: Record) -> list[str]:
     """Channels that have one value from the first to the last sample, while others have not."""
-    streams = {"force": (WRENCH, record.wrench), "velocity": (TWIST, record.twist)}
+    force = record.wrench if record.cop is None else record.wrench[:, :3]  # a torque that was moved is mixed
+    streams = {"force": (WRENCH, force), "velocity": (TWIST, record.twist)}
     lines = []
     for what, (names, values) in streams.items():
         still = (values == values[0]).all(axis=0)
         if still.all() and values[0].any() and not (what == "velocity" and _steady(record)):
             lines.append(f"no {what} ever changes: is the sensor frozen, or not connected?")
-        elif record.cop is None or what == "velocity":
-            dead = [name for name, value, is_ in zip(names, values[0], still, strict=True) if is_ and value]
-            if dead and what == "force":
+        elif what == "force":
+            dead = [name for name, value, is_ in zip(names, values[0], still, strict=False) if is_ and value]
+            if dead:
                 lines.append(f"{', '.join(dead)} never changes: is it frozen, or not connected?")
     return lines
 
@@ -152,7 +171,7 @@ def _against(samples: Samples) -> list[str]:
         along, moved = wrench[:, k], twist[:, axis]
         clear = (np.abs(moved) > np.maximum(slow, _PART * speed)) & (np.abs(along) > loaded)
         way = float(np.abs(moved * np.diff(samples.t, prepend=samples.t[0]))[clear].sum())
-        if np.count_nonzero(clear) >= _ENOUGH and way > _WAY:
+        if np.count_nonzero(clear) >= ENOUGH and way > _WAY:
             shown += 1
             if (along * moved < 0.0)[clear].mean() > _MOST:
                 against.append((WRENCH[k], TWIST[axis]))

@@ -11,11 +11,10 @@ from typing import Any
 import numpy as np
 
 from estimator.records.cells import numbers, times
-from estimator.records.checks import OPPOSITE, correlation
+from estimator.records.checks import OPPOSITE, correlation, likely_time
 from estimator.records.extras import extra
 from estimator.records.record import Array
 from estimator.records.sources import read_columns
-from estimator.records.table import unit_in_name
 from estimator.records.units import (
     FINGERS,
     POSITIONS,
@@ -24,6 +23,7 @@ from estimator.records.units import (
     TRUTH,
     UNITS,
     VELOCITY_TIME,
+    unit_of,
     units_of,
     without_unit,
 )
@@ -81,14 +81,15 @@ class Proposal:
 
     key: str
     column: str
-    unit: str
+    unit: str | None
+    """None: it has one that slipgym does not know."""
     sign: int
     why: str
     """Reason for unit and sign."""
     position: bool
     """Whether it counts displacement."""
     values: Array
-    """In SI units with the sign, NaN where a cell is empty."""
+    """In SI units, by the likely one if its own is unknown, with the sign; NaN where a cell is empty."""
 
 
 def propose_fingers(path: Path) -> tuple[dict[str, list[Proposal]], list[str]]:
@@ -101,16 +102,17 @@ def propose_fingers(path: Path) -> tuple[dict[str, list[Proposal]], list[str]]:
     Raises:
         FileNotFoundError, ValueError, ModuleNotFoundError: As `load`.
     """
-    frame, found = read_columns(path), {}
+    (frame, stated), found = read_columns(path), {}
     sides = {name: _side(name) for name in frame}
     for side in sorted({side for side in sides.values() if side}):
         names = {_SIDE.sub("", name).strip("_. "): name for name in frame if sides[name] in ("", side)}
-        own = _proposed({short: frame[name] for short, name in names.items()})
+        of_names = ({short: of[name] for short, name in names.items()} for of in (frame, stated))
+        own = _proposed(*of_names)
         own = [replace(each, column=names[each.column]) for each in own]
         if {"f_x", "f_n"} <= {each.key for each in own if sides[each.column] == side}:
             found[f"finger_{side}" if side.isdigit() else side] = own
     if len(found) < 2:
-        found = {"": _proposed(frame)}
+        found = {"": _proposed(frame, stated)}
     used = {each.column for own in found.values() for each in own}
     return found, [name for name in frame if name not in used]
 
@@ -122,7 +124,7 @@ def _side(name: str) -> str:
     return {"l": "left", "r": "right"}.get(side, side)
 
 
-def _proposed(frame: Mapping[str, Any]) -> list[Proposal]:
+def _proposed(frame: Mapping[str, Any], stated: Mapping[str, list[str]]) -> list[Proposal]:
     numeric: dict[str, tuple[Array, bool]] = {}
     for name, cells in frame.items():
         series = extra("pandas").Series(cells, name=name)
@@ -149,18 +151,30 @@ def _proposed(frame: Mapping[str, Any]) -> list[Proposal]:
     for key in (key for key in UNITS if key in chosen):
         values, dated = numeric[chosen[key]]
         alike = [numeric[chosen[other]][0] for other in chosen if UNITS[other] is UNITS[key]]
-        unit, sign, why = ("s", 1, "dates") if dated else _unit(key, chosen[key], values, alike, found)
-        found[key] = Proposal(key, chosen[key], unit, sign, why, False, sign * UNITS[key][unit] * values)
+        said = stated[chosen[key]]
+        unit, sign, why = ("s", 1, "dates") if dated else _unit(key, chosen[key], values, alike, found, said)
+        values = sign * UNITS[key][unit] * values
+        found[key] = _as_stated(
+            Proposal(key, chosen[key], unit, sign, why, False, values), said * (not dated)
+        )
     ways = {key: numeric[name][0] for key, name in places.items()}
     spans = {key: float(np.ptp(way[np.isfinite(way)])) for key, way in ways.items()}
     for key, name in places.items():
         units = units_of(key, position=True)
         span = max(spans[other] for other in places if POSITIONS[other] == POSITIONS[key])
         likely = [unit for unit, factor in units.items() if span * factor <= _SPANS[key]]
-        unit = unit_in_name(key, name, position=True) or (likely or list(units))[0]
+        unit = unit_of(key, stated[name], position=True) or (likely or list(units))[0]
         why = f"a way of up to {span * units[unit]:.3g} {next(iter(units))}"
-        found[key] = Proposal(key, name, unit, 1, why, True, units[unit] * ways[key])
+        line = Proposal(key, name, unit, 1, why, True, units[unit] * ways[key])
+        found[key] = _as_stated(line, stated[name])
     return list(found.values())
+
+
+def _as_stated(line: Proposal, said: list[str]) -> Proposal:
+    """A line without its unit, where the file states one that is unknown."""
+    if said and unit_of(line.key, said, line.position) is None:
+        return replace(line, unit=None, why=f"unknown unit {said[0]!r}: state `scale`, or `unit`")
+    return line
 
 
 def text_of_fingers(found: Mapping[str, list[Proposal]]) -> str:
@@ -173,7 +187,8 @@ def text_of_fingers(found: Mapping[str, list[Proposal]]) -> str:
         for each in proposals:
             sign, kind = ", sign: -1" if each.sign < 0 else "", "position" if each.position else "column"
             column = each.column.replace("'", "''")
-            own.append(f"{each.key}: {{{kind}: '{column}', unit: '{each.unit}'{sign}}}  # {each.why}")
+            unit = f", unit: '{each.unit}'" if each.unit else ""
+            own.append(f"{each.key}: {{{kind}: '{column}'{unit}{sign}}}  # {each.why}")
         given = {each.key for each in proposals}
         own += [f"# {key}: ?  nothing looks like it" for key in REQUIRED if key not in given]
         lines += ["    " * bool(finger) + line for line in own]
@@ -229,18 +244,20 @@ def _said(key: str, name: str) -> int:
 
 
 def _unit(
-    key: str, name: str, values: Array, alike: list[Array], found: Mapping[str, Proposal]
+    key: str, name: str, values: Array, alike: list[Array], found: Mapping[str, Proposal], said: list[str]
 ) -> tuple[str, int, str]:
     """Unit, sign and their reason; the largest of the columns of a kind decides the unit of all."""
     shorter = None if _said(key, name) else without_unit(key, name)
-    stated, units = shorter[1] if shorter else unit_in_name(key, name), UNITS[key]
+    stated, units = unit_of(key, said) or (shorter[1] if shorter else None), UNITS[key]
     x = values[np.isfinite(values)]
     if key in (TIME, VELOCITY_TIME):
         step = float(np.median(np.abs(np.diff(np.unique(x))))) if len(x) > 1 else 0.0
         rates = {unit: 1.0 / (step * factor) for unit, factor in units.items()} if step else {}
-        likely = [unit for unit, rate in rates.items() if RATES[0] <= rate <= RATES[1]]
-        unit = stated or (likely[0] if likely else "s")
-        return unit, 1, f"{rates[unit]:.4g} Hz" if rates else "one time"
+        likely = likely_time(np.unique(x), units) if rates else []
+        fast = [unit for unit, rate in rates.items() if RATES[0] <= rate <= RATES[1]]
+        first, *others = [stated] if stated else likely or fast or ["s"]
+        too = "".join(f"; {rates[unit]:.5g} Hz if it is in {unit}" for unit in others if unit in likely)
+        return first, 1, f"{rates[first]:.5g} Hz{too}" if rates else "one time"
     size = max(float(np.nanpercentile(np.abs(each), 99)) for each in alike)
     most = LIKELY["omega"] if key.endswith("omega") else LIKELY["v"] if "m/s" in units else np.inf
     if "N" in units:
@@ -249,7 +266,7 @@ def _unit(
         most = LIKELY["arm"] * float(np.nanpercentile(np.abs(found["f_n"].values), 99))
     fits = [unit for unit, factor in units.items() if size * factor <= most]
     unit = stated or (fits[0] if fits else next(iter(units)))
-    sign, why = 1, "unit in its name" if stated else f"up to {size * units[unit]:.3g} {next(iter(units))}"
+    sign, why = 1, "unit of the file" if stated else f"up to {size * units[unit]:.3g} {next(iter(units))}"
     pressed = x[np.abs(x) > 0.5 * np.max(np.abs(x))]
     if key == "f_n" and len(pressed) and float(np.median(pressed)) < 0.0:
         sign, why = -1, f"{why}; negative in contact"

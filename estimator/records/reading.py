@@ -62,7 +62,8 @@ def from_arrays(
 
     Args:
         forces: Name -> array (n,), or a pandas.DataFrame, with time and forces and, unless `velocities` is
-            given, velocities. Names, units and signs are as in a file: `t` [s], `f_x`, ... [N].
+            given, velocities. Names, units and signs are as in a file: `t` [s], `f_x`, ... [N]. A masked
+            cell is an empty one.
         velocities: The same for velocities at times of their own, (m,).
         columns: The mapping; None for the default.
         name: What messages and reports call it.
@@ -85,7 +86,10 @@ def _of_memory(given: Mapping[str, Any] | Any, name: str, wanted: Wanted) -> lis
         kind = brief(type(given).__name__)
         raise ValueError(f"{name}: must be a mapping of names to arrays or a DataFrame, got {kind}")
     try:
-        arrays = {str(key): np.asarray(values) for key, values in given.items()}
+        arrays = {
+            str(key): values if isinstance(values, np.ma.MaskedArray) else np.asarray(values)
+            for key, values in given.items()
+        }
     except ValueError as error:
         raise ValueError(f"{name}: cannot be read: {brief(error, 300)}") from error
     shapes = {key: values.shape for key, values in arrays.items()}
@@ -114,8 +118,10 @@ def _record(files: list[list[Table]], columns: Columns) -> Record:
     forces.require((TIME, *WRENCH))
     velocities.require((time, *TWIST))
     extra_keys = _cop_keys(forces)
-    force_t, wrench, at = _stream(forces, TIME, WRENCH, sparse, what="force")
-    twist_t, twist, twist_at, hold = _velocities(velocities, time, sparse)
+    force_t, wrench, at, usual = _stream(forces, TIME, WRENCH, sparse, what="force")
+    twist_t, twist, twist_at, hold, its_usual = _velocities(velocities, time, sparse)
+    usual = [unit for unit in usual if time != TIME or unit in its_usual]  # one clock has one unit
+    doubt = checks.check_time_unit(forces.name, force_t, usual)
     checks.check_wrench(forces.name, wrench, forces.rows(at))
     checks.check_twist(velocities.name, twist, velocities.rows(twist_at))
     cop = _cop(forces, extra_keys, wrench, at)
@@ -125,7 +131,8 @@ def _record(files: list[list[Table]], columns: Columns) -> Record:
     checks.check_torque(forces.name, wrench)
     own = columns.given.get(GRIP) and forces.has(GRIP)  # a column of that name may be anything
     grip = forces.numbers([GRIP], at)[:, 0] if own else None
-    return Record(forces.name, force_t, wrench, cop, twist_t, twist, _truth(forces, at), hold, grip=grip)
+    truth = _truth(forces, at)
+    return Record(forces.name, force_t, wrench, cop, twist_t, twist, truth, hold, grip=grip, doubt=doubt)
 
 
 def _time_of_velocities(table: Table, default: str | None) -> str:
@@ -143,13 +150,13 @@ def _time_of_velocities(table: Table, default: str | None) -> str:
     return VELOCITY_TIME if other and (time is None or time.column not in there) else TIME
 
 
-def _velocities(table: Table, time: str, sparse: bool) -> tuple[Array, Array, Rows, float | None]:
-    """Time (m,), velocities (m, 3), places in the table, and for how long the file repeats each.
+def _velocities(table: Table, time: str, sparse: bool) -> tuple[Array, Array, Rows, float | None, list[str]]:
+    """Time (m,), velocities (m, 3), places in the table, for how long the file repeats each, usual units.
 
     A velocity of positions is their difference over the time between two samples, at the later one: without
     a sample before it, or after a gap, there is none.
     """
-    t, twist, at = _stream(table, time, TWIST, sparse, what="velocity")
+    t, twist, at, usual = _stream(table, time, TWIST, sparse, what="velocity")
     counted = [k for k, key in enumerate(TWIST) if (column := table.columns[key]) and column.position]
     for k in set(counted) & {TWIST.index("omega")}:
         twist[:, k] = np.unwrap(twist[:, k])
@@ -162,13 +169,13 @@ def _velocities(table: Table, time: str, sparse: bool) -> tuple[Array, Array, Ro
         twist[1:, counted] = np.diff(twist[:, counted], axis=0) / step[:, None]
         local = np.flatnonzero(step <= GAP_PERIODS * np.median(step)) + 1
         t, twist, at = t[local], twist[local], at[local]
-    return t, twist, at, hold
+    return t, twist, at, hold, usual
 
 
 def _stream(
     table: Table, time: str, keys: tuple[str, ...], sparse: bool, what: str
-) -> tuple[Array, Array, Rows]:
-    """Time (n,), values (n, len(keys)) and places in the table (n,) of one stream."""
+) -> tuple[Array, Array, Rows, list[str]]:
+    """Time (n,), values (n, len(keys)) and places in the table (n,) of one stream; see `check_rate`."""
     at = table.filled(keys) if sparse else np.arange(len(table.frame))
     (t, column), values = table.seconds(time, at), table.numbers(keys, at)
     empty = np.isnan(values)
@@ -178,8 +185,7 @@ def _stream(
         rest = "; a row holds all of a stream or none" if sparse else ""
         raise ValueError(f"{table.name}: row {table.rows(at)[k]}: {brief(lacking)} is empty or NaN{rest}")
     checks.check_time(table.name, t, table.rows(at), what)
-    checks.check_rate(table.name, t, what, time, column)
-    return t, values, at
+    return t, values, at, checks.check_rate(table.name, t, what, time, column)
 
 
 def _cop_keys(table: Table) -> tuple[str, ...]:

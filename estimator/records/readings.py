@@ -50,6 +50,7 @@ def reading_warnings(record: Record, samples: Samples) -> list[str]:
     force = record.wrench if record.cop is None else record.wrench[:, :3]  # a torque that was moved is mixed
     names = WRENCH[: force.shape[1]]
     lines = [
+        *filter(None, [record.doubt]),
         *_held(record),
         *_saturated(names, force),
         *_saturated(TWIST, record.twist),

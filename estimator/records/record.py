@@ -39,6 +39,8 @@ class Record:
     """Usual times between two forces and two velocities, where they are known [s]; None: the medians."""
     grip: Array | None = None
     """Force of the gripper itself by force sample, (n,) [N], NaN where unknown; None: the record has none."""
+    doubt: str = ""
+    """Why the unit of its time may be another one; empty: it is clear."""
 
 
 def seconds(t: Any) -> str:

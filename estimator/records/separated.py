@@ -30,7 +30,7 @@ _COMMENT = re.compile(r"^\s*(#|%|//)\s*")
 _NUMBER = re.compile(r"[-+]?(\d+[.,]?\d*|[.,]\d+)([eE][-+]?\d+)?|[-+]?(nan|inf|infinity)", re.IGNORECASE)
 _COMMENTS = re.compile(r"^[ \t]*(#|%|//).*$", re.MULTILINE)
 _TOO_LONG = (
-    "its rows have more cells than its header has names ({}); with decimal commas, separate the cells by "
+    "its row {} has more cells than its header has names ({}); with decimal commas, separate the cells by "
     "semicolons; no separator may end a row"
 )
 _DECIMAL_COMMA = re.compile(r"[-+]?\d*,\d+([eE][-+]?\d+)?")
@@ -44,7 +44,7 @@ def read_csv(path: Path, wanted: Wanted, only: bool = False) -> Table:
     has units. A decimal comma needs another separator than the comma. With `only`, no other columns are read.
 
     Raises:
-        ValueError: It is no text, has no header, or its rows have more cells than its header.
+        ValueError: It is no text, has no header, or a row has more cells than its header.
         OSError: It cannot be opened or unpacked.
         EOFError: It is cut off.
         zlib.error: Its packing is damaged.
@@ -75,7 +75,7 @@ def _read(open_text: Callable[[], Any], wanted: Wanted, only: bool) -> Table:
     if rows and 1 < sum(map(bool, rows[0])) == _texts(rows[0]):
         units = dict(zip(names, rows.pop(0), strict=False))
     if rows and len(rows[0]) > len(names):  # pandas would take the first columns for an index
-        raise ValueError(_TOO_LONG.format(len(names)))
+        raise ValueError(_TOO_LONG.format(1, len(names)))
     asked = [k for k, name in enumerate(names) if is_wanted(name, wanted)]
     comma = separator != "," and any(
         _DECIMAL_COMMA.fullmatch(row[k]) for row in rows for k in asked if k < len(row)
@@ -86,7 +86,7 @@ def _read(open_text: Callable[[], Any], wanted: Wanted, only: bool) -> Table:
         "sep": separator,
         "header": None,
         "names": range(len(names)),
-        "usecols": asked if only else None,
+        "usecols": asked if only else range(len(names)),  # empty cells behind them are no error
         "decimal": "," if comma else ".",
         "skipinitialspace": True,
         "low_memory": False,  # one type for all cells of a column
@@ -94,10 +94,9 @@ def _read(open_text: Callable[[], Any], wanted: Wanted, only: bool) -> Table:
     }
     skipped = lines[0] if units else None
     try:
-        frame = _in_pieces(lambda: _Body(open_text(), at + 1, skipped), settings)
+        frame = _in_pieces(lambda: _Body(open_text(), at + 1, skipped, separator, len(names)), settings)
     except pandas.errors.ParserError as error:
-        longer = re.search(r"Expected \d+ fields", str(error))
-        raise ValueError(_TOO_LONG.format(len(names)) if longer else str(error)) from error
+        raise ValueError(str(error)) from error
     frame.columns = [names[k] for k in frame.columns]
     return Table(frame, names, units, comma)
 
@@ -116,10 +115,14 @@ def _in_pieces(open_body: Callable[[], Any], settings: dict[str, Any]) -> Any:
 
 
 class _Body(io.TextIOBase):
-    """The lines of a text below its first `at`, without comments and without the row of units, if any."""
+    """The lines of a text below its first `at`, without comments and without the row of units, if any.
 
-    def __init__(self, text: Any, at: int, units: str | None) -> None:
+    It refuses a row of more cells than `count`, unless they are empty: pandas would leave them out.
+    """
+
+    def __init__(self, text: Any, at: int, units: str | None, separator: str, count: int) -> None:
         self._text, self._units = text, units
+        self._separator, self._count, self._rows = separator, count, 0
         for _ in islice(text, at):
             pass
 
@@ -133,7 +136,19 @@ class _Body(io.TextIOBase):
             if self._units is not None and self._units in text:
                 text, self._units = text.replace(self._units, "", 1), None
             if text or not lines:
+                self._check(text)
                 return text
+
+    def _check(self, text: str) -> None:
+        rows = [line for line in text.split("\n") if line and not line.isspace()]
+        if len(self._separator) > 1:
+            found = [len(row.split()) for row in rows]
+        else:
+            found = [1 + row.count(self._separator) for row in rows]
+        for k in (k for k, cells in enumerate(found) if cells > self._count):
+            if any(_cells(rows[k], self._separator)[self._count :]):
+                raise ValueError(_TOO_LONG.format(1 + self._rows + k, self._count))
+        self._rows += len(rows)
 
     def __iter__(self) -> Any:
         return iter(self._text)

@@ -61,13 +61,18 @@ def of_frame(frame: Any) -> Table:
     return Table(frame.set_axis(names, axis=1), names)
 
 
-def read_columns(path: Path) -> dict[str, Any]:
-    """All columns of a file, by name; those of different topics or arrays may have different lengths."""
+def read_columns(path: Path) -> tuple[dict[str, Any], dict[str, list[str]]]:
+    """All columns of a file, by name, and the texts that state their units.
+
+    Columns of different topics or arrays may have different lengths.
+    """
     found: dict[str, Any] = {}
+    stated: dict[str, list[str]] = {}
     for table in read_sources(path, None):
         for name in table.frame.columns:
             found.setdefault(name, table.frame[name])
-    return found
+            stated.setdefault(name, table.stated(name))
+    return found, stated
 
 
 def _of_arrays(
@@ -124,7 +129,7 @@ def _csv(path: Path, wanted: Wanted) -> list[Table]:
 
 
 def _excel(path: Path, wanted: Wanted) -> list[Table]:
-    """Each sheet as a csv file."""
+    """Each sheet as a csv file; of several, one without a text, and so without names, is left out."""
     with zipfile.ZipFile(path) as file:
         _refuse_large(*(each.file_size for each in file.infolist()))
     book = extra("openpyxl").load_workbook(path, read_only=True, data_only=True)
@@ -135,9 +140,18 @@ def _excel(path: Path, wanted: Wanted) -> list[Table]:
     sheets = {title: rows for title, rows in sheets.items() if any(any(row) for row in rows)}
     if not sheets:
         raise ValueError("no sheet has cells")
+    several = len(sheets) > 1
+    named = {
+        title: rows for title, rows in sheets.items() if any(isinstance(x, str) for row in rows for x in row)
+    }
     found = []
-    for title, rows in sheets.items():
-        table, before = read_cells(rows, wanted), f"{title}/" * (len(sheets) > 1)
+    for title, rows in (named or sheets).items():
+        before = f"{title.strip()}/" * several
+        own = None if wanted is None else dict.fromkeys(name.removeprefix(before) for name in wanted)
+        try:
+            table = read_cells(rows, own)
+        except ValueError as error:
+            raise ValueError(f"sheet {brief(repr(title))}: {error}") from error
         units = {before + name: unit for name, unit in table.units.items()}
         names = [before + name for name in table.names]
         found.append(Table(table.frame.add_prefix(before), names, units, table.comma))

@@ -10,7 +10,7 @@ from estimator.estimate import Estimate
 from estimator.reasons import COUNTS, Doubts, reasons
 from estimator.records.alignment import Samples, period
 from estimator.records.calibration import calibration_rows
-from estimator.records.faults import fault_warnings
+from estimator.records.faults import ENOUGH, fault_warnings, slides
 from estimator.records.reading import CONTACT
 from estimator.records.readings import reading_warnings
 from estimator.records.record import Record
@@ -138,6 +138,12 @@ def not_observable(result: Result) -> list[str]:
         return [f"f_n never reaches {CONTACT} N: there was no contact."]
     against = Doubts() if result.calibration is None else result.calibration.doubts
     found = reasons(Estimate._make(result.estimates[-1].item()), *against)
+    f_n = result.samples.wrench[slides(result.samples), 2]
+    if "mu_c" in found and not result.estimates[-1][COUNTS["mu_c"]] and len(f_n) >= ENOUGH:
+        found["mu_c"] = (
+            f"not observed: this is the start value, although {len(f_n)} samples slip: f_n is below "
+            f"{CONTACT} N in {_percent(f_n < CONTACT)} of them, the others show no friction to rely on"
+        )
     lines = [f"{name}: {why}." for name, why in found.items()]
     if result.samples.segment[-1] > 0:
         lines.append(

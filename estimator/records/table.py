@@ -13,10 +13,12 @@ import numpy as np
 from estimator.records.cells import numbers, times
 from estimator.records.columns import Column, Columns
 from estimator.records.record import Array, Rows
-from estimator.records.units import UNITS, unit_in, units_of
+from estimator.records.units import UNITS, unit_of, units_of
 from estimator.suggestions import brief, guess, unknown
 
 _UNIT_IN_NAME = re.compile(r"[\[(]([^\[\]()]*)[\])]$")
+_PLACE = re.compile(r"[\d\s,]*")
+"""What brackets hold that state no unit: nothing, or the place of a column in an array."""
 _SHOWN = 40
 """Most names of columns or values in a message."""
 
@@ -36,6 +38,8 @@ class Table(NamedTuple):
     """Name of the file."""
     columns: Columns = Columns()
     """The mapping."""
+    joints: bool = False
+    """Whether its names have brackets of its reader's own, such as those of a joint, which state no unit."""
 
     def has(self, key: str) -> bool:
         """Whether it holds what a key means; a column that the mapping names must be there.
@@ -96,30 +100,40 @@ class Table(NamedTuple):
         own = self._read(times, key, at)
         if own is None:
             return self.numbers([key], at)[:, 0], self.column(key)
-        return own + self.column(key).offset, None
+        column = self.columns[key]
+        return own + (column.offset if column else 0.0), None
 
     def rows(self, at: Rows) -> Rows:
         """Rows of the file, counted from 1, at places of this table, (n,)."""
         return np.asarray(self.frame.index)[at] + 1
 
     def column(self, key: str) -> Column:
-        """The column of a key; the unit is that of the mapping, or else of the file, or else the default."""
+        """The column of a key; the unit is that of the mapping, or else of the file, or else the default.
+
+        Raises:
+            ValueError: The file states a unit that is none of the key's, the mapping neither unit nor scale.
+        """
         column = self.columns[key]
         assert column is not None
         if not column.assumed:
             return column
-        said = self.units.get(column.column, "")
-        unit = unit_in(key, said, column.position) or unit_in_name(key, column.column, column.position)
-        units = units_of(key, column.position)
+        said, units = self.stated(column.column), units_of(key, column.position)
+        unit = unit_of(key, said, column.position)
         if unit is not None:
             factor, offset = column.factor * units[unit], column.offset * units[unit]
             return replace(column, unit=unit, factor=factor, offset=offset, assumed=False)
-        if re.search(r"\w", said):
+        if said and abs(column.factor) == 1.0:  # the factor of the default unit, without a scale
             raise ValueError(
-                f"{self.name}: {brief(column.column)}: {unknown('unknown unit', said, units)}; "
-                f"say it by `{key}: {{unit: …}}` in the mapping"
+                f"{self.name}: {brief(column.column)}: {unknown('unknown unit', said[0], units)}; say it by "
+                f"`{key}: {{unit: …}}` in the mapping, or its factor to {column.unit}, `{key}: {{scale: …}}`"
             )
         return column
+
+    def stated(self, name: str) -> list[str]:
+        """Texts by which a row of units, an attribute or the end of its name state the unit of a column."""
+        in_name = None if self.joints else _UNIT_IN_NAME.search(name)
+        said = [self.units.get(name, "").strip(), in_name[1].strip() if in_name else ""]
+        return [text for text in said if not _PLACE.fullmatch(text.strip("[]()"))]
 
     def _read(self, reader: Any, key: str, at: Rows | None) -> Any:
         column = self.columns[key]
@@ -129,12 +143,6 @@ class Table(NamedTuple):
             return reader(cells if at is None else cells.iloc[at], self.comma)
         except (ValueError, TypeError, OverflowError) as error:
             raise ValueError(f"{self.name}: {brief(error, 300)}") from error
-
-
-def unit_in_name(key: str, name: str, position: bool = False) -> str | None:
-    """The unit that the name of a column ends with, such as "Fx [N]"; None: none of the key's."""
-    said = _UNIT_IN_NAME.search(name)
-    return unit_in(key, said[1], position) if said else None
 
 
 def listed(names: Sequence[Any]) -> str:

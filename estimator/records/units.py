@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import re
+from collections.abc import Sequence
 
 from estimator.online import TWIST, WRENCH
 
@@ -19,6 +21,7 @@ ROWS, FINGERS = "rows", "fingers"
 OPTIONAL = (*COP, *TILT, *TRUTH, VELOCITY_TIME, GRIP, *BENCH)
 
 _WRITTEN = str.maketrans({"µ": "u", "μ": "u", "°": "deg", **dict.fromkeys(" []()·*.")})
+_LONG_SECOND = re.compile(r"sec(ond)?s?$")
 _SECONDS = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}
 _FORCE = {"N": 1.0, "mN": 1e-3, "kN": 1e3}
 _TORQUE = {"N m": 1.0, "N mm": 1e-3, "mN m": 1e-3, "N cm": 1e-2}
@@ -60,10 +63,11 @@ def likely_unit(key: str, size: float, usual: float) -> str:
     return min(smaller, key=lambda unit: abs(math.log(size * smaller[unit] / usual)))
 
 
-def unit_in(key: str, text: str, position: bool = False) -> str | None:
-    """The unit of a key that a text such as "[Nmm]", "(mm/s)" or "µs" means; None: none of its units."""
-    written = text.translate(_WRITTEN)
-    return next((unit for unit in units_of(key, position) if unit.translate(_WRITTEN) == written), None)
+def unit_of(key: str, texts: Sequence[str], position: bool = False) -> str | None:
+    """The unit of a key that a text such as "[Nmm]", "(mm/s)" or "sec" means; None: none of its units."""
+    units = {unit.translate(_WRITTEN): unit for unit in units_of(key, position)}
+    written = (_LONG_SECOND.sub("s", text.translate(_WRITTEN)) for text in texts)
+    return next((units[text] for text in written if text in units), None)
 
 
 def without_unit(key: str, name: str) -> tuple[str, str] | None:

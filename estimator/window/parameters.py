@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from estimator.parameters import Parameters, parameter
+from estimator.parameters import RADIUS, Parameters, parameter
 
 EARLIEST, LATEST = -1, 5  # Delays of the velocity [samples]; negative: the force itself is late
 
@@ -18,19 +18,17 @@ class AdaptiveParameters(Parameters):
     sd_force: float = parameter(0.02, "Standard deviation of f_x and f_y.", "(0, inf)", "N")
     sd_normal: float = parameter(0.04, "Standard deviation of f_n.", "(0, inf)", "N")
     sd_torque: float = parameter(5e-4, "Standard deviation of tau.", "(0, inf)", "N m")
-    resolution: float = parameter(1e-5, "Displacement of one count of the slip sensor.", "(0, inf)", "m")
+    resolution: float = parameter(1e-5, "Displacement of one count of the slip sensor.", "(0, 0.001]", "m")
     nominal_delay: int = parameter(
         1, "Delay of the velocity in samples that is assumed until one is found.", f"[{EARLIEST}, {LATEST}]"
     )
     mu_c0: float = parameter(0.5, "Start value of mu_c: the middle of what pads show.", "(0, inf)")
     mu_s0: float = parameter(0.65, "Start value of mu_s.", "(0, inf)")
-    r0: float = parameter(
-        0.01, "Start value of r: that of a uniform disc as large as the pad.", "(0, inf)", "m"
-    )
+    r0: float = parameter(0.01, "Start value of r: that of a uniform disc as large as the pad.", RADIUS, "m")
     mu_min: float = parameter(0.01, "mu_s and mu_c are kept at or above this.", "(0, inf)")
     mu_max: float = parameter(10.0, "mu_s and mu_c are kept at or below this.", "(0, inf)")
-    r_min: float = parameter(1e-4, "r is kept at or above this.", "(0, inf)", "m")
-    r_max: float = parameter(0.015, "Radius of the pad: r is kept at or below this.", "(0, inf)", "m")
+    r_min: float = parameter(1e-4, "r is kept at or above this.", RADIUS, "m")
+    r_max: float = parameter(0.015, "Radius of the pad: r is kept at or below this.", RADIUS, "m")
     eps_fn: float = parameter(0.2, "Normal force from which there is contact.", "(0, inf)", "N")
     eps_v: float = parameter(1.5e-3, "Scaled speed above which the contact moves.", "(0, inf)", "m/s")
     sd_log_mu_c0: float = parameter(1.2, "Standard deviation of ln mu_c at the start.", "(0, 3]")
@@ -47,7 +45,7 @@ class AdaptiveParameters(Parameters):
         0.015, "Spread of the tilt of the force sensor about each axis.", "(0, inf)", "rad"
     )
     sd_cop: float = parameter(
-        0.7, "Spread of the error of the centre of pressure, each way.", "(0, inf)", "mm"
+        0.7, "Spread of the error of the centre of pressure, each way.", "(0, 200]", "mm"
     )
     sd_gain: float = parameter(
         0.02, "Relative errors that no motion shows: gain, cross-talk, anisotropy.", "[0, inf)"

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from estimator._numba.caching import njit
 from estimator._numba.entry_point import entry_point
 from estimator.estimate import confidence_of
-from estimator.parameters import parameter
+from estimator.parameters import RADIUS, parameter
 from estimator.registry import Specification
 from estimator.sample import clamped, publish, readable
 from estimator.stick_slip import STICK_SLIP_STATE, StickSlipParameters, start
@@ -42,10 +42,8 @@ class GruParameters(StickSlipParameters):
     mu_c0: float = parameter(0.7, "Start value of mu_c: the middle of what pads show.", "(0, inf)")
     mu_s0: float = parameter(0.9, "Start value of mu_s.", "(0, inf)")
     heuristic: bool = parameter(True, "Whether the network sees that f_n rises fast.")
-    r0: float = parameter(
-        0.01, "Start value of r: that of a uniform disc as large as the pad.", "(0, inf)", "m"
-    )
-    r_max: float = parameter(0.015, "r is kept at or below this: the pad's radius.", "(0, inf)", "m")
+    r0: float = parameter(0.01, "Start value of r: that of a uniform disc as large as the pad.", RADIUS, "m")
+    r_max: float = parameter(0.015, "r is kept at or below this: the pad's radius.", RADIUS, "m")
     weights: str = parameter("", "File of the network's weights (npz); empty: those that come with it.")
 
     def __post_init__(self) -> None:

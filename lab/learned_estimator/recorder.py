@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from estimator._numba.entry_point import entry_point
 from estimator.estimate import COMMON_STATE
-from estimator.parameters import Parameters, parameter
+from estimator.parameters import RADIUS, Parameters, parameter
 from estimator.registry import Specification
 
 ROOM = 1024
@@ -22,7 +22,7 @@ class RecorderParameters(Parameters):
 
     mu_s0: float = parameter(0.9, "Stated mu_s.", "(0, inf)")
     mu_c0: float = parameter(0.7, "Stated mu_c.", "(0, inf)")
-    r0: float = parameter(0.01, "Stated r.", "(0, inf)", "m")
+    r0: float = parameter(0.01, "Stated r.", RADIUS, "m")
 
 
 STATE = np.dtype([*COMMON_STATE, ("readings", np.float32, (ROOM, 7))], align=True)

@@ -64,6 +64,11 @@ def main(
         told = [line for record in read.values() for line in faults(record, align(record, allow_gaps=True))]
     except ValueError as error:
         typer.echo(f"\nslipgym estimate does not take it yet:\n{error}")
+        if _identifies(log, output):
+            typer.echo(
+                "\nslipgym identify takes it, as a log without a slip sensor; go on with\n"
+                f"  slipgym identify {log} --columns {output}"
+            )
         return
     for name, record in read.items():
         rates = [1.0 / ((t[-1] - t[0]) / max(len(t) - 1, 1)) for t in (record.force_t, record.twist_t)]
@@ -74,3 +79,17 @@ def main(
     names = ["estimate", *(["identify"] if all(columns.given.get(key) for key in BENCH) else [])]
     lines = [f"  slipgym {name} {log} --columns {output}" for name in names]
     typer.echo("\n".join([*dict.fromkeys(told), "go on with", *lines]))
+
+
+def _identifies(log: Path, mapping: Path) -> bool:
+    """Whether `slipgym identify` takes a log, as one without a slip sensor."""
+    from estimator.online import TWIST
+    from estimator.records import load_columns
+    from slipgym import identification
+
+    try:
+        columns = load_columns(mapping)
+        identification.read_log(log, columns)
+    except ValueError:
+        return False
+    return not any(columns.given.get(key) for key in TWIST)

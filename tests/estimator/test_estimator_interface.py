@@ -85,6 +85,17 @@ def test_a_bad_value_names_itself_and_the_range(name, value):
         estimator.make("rls", **{name: value})
 
 
+@pytest.mark.parametrize("name", ["adaptive", "rls", "joint", "disc", "ukf"])
+def test_a_length_in_another_unit_is_refused(name):
+    """15 mm of a pad as 15 m: no bound of the kind admits it, whichever parameter it is."""
+    fields = dataclasses.fields(estimator.make(name).parameters)
+    lengths = [each.name for each in fields if each.metadata["unit"] == "m"]
+    assert {"r0", "r_min", "r_max"} <= set(lengths)
+    for length in lengths:
+        with pytest.raises(ValueError, match=rf"{length} = 15: expected a number in \(0, 0\.\d+\] m"):
+            estimator.make(name, **{length: 15})
+
+
 @pytest.mark.parametrize(
     "values",
     [

@@ -6,6 +6,9 @@ import numpy as np
 import pytest
 
 from estimator import records
+from estimator.records.sources import read_columns
+
+FORCE, TWIST = ("f_x", "f_y", "f_n", "tau"), ("v_x", "v_y", "omega")
 
 
 def rewritten(path, separator, point, end="\n"):
@@ -41,6 +44,35 @@ def test_rows_longer_than_the_header_are_refused(table, save, fault):
         header, rows = path.read_text().split("\n", 1)
         path.write_text(header + "\n" + rows.replace("\n", ",\n"))
     with pytest.raises(ValueError, match=r"more cells than its header has names \(8\); .* semicolons"):
+        records.load(path)
+
+
+@pytest.mark.parametrize("names", [None, "t f_x f_y f_n tau v_x v_y omega"])
+@pytest.mark.parametrize("at", [2, 150, 1500])
+def test_a_longer_row_is_refused_wherever_it_is(table, save, at, names):
+    """Also behind comments and empty lines; an empty cell at the end of a row shifts nothing."""
+    path = save(table[["t", *FORCE, *TWIST]], "plain.csv")
+    header, *rows = path.read_text().splitlines()
+    if names:
+        header, rows = names, [" ".join(cell or "nan" for cell in row.split(",")) for row in rows]
+    comma = "," if names is None else " "
+    rows[0] = f"# note{12 * ',1'}\n\n{rows[0]}"
+    rows[3] += comma
+    path.write_text("\n".join([header, *rows]))
+    records.load(path)
+    read_columns(path)
+    rows[at - 1] += f"{comma}7"
+    path.write_text("\n".join([header, *rows]))
+    with pytest.raises(ValueError, match=rf"row {at} has more cells .* \(8\); .* semicolons"):
+        records.load(path)
+
+
+def test_decimal_commas_behind_whole_numbers_are_refused(table, save):
+    path = save(table.dropna(subset=["f_n", "omega"]))
+    header, *rows = path.read_text().splitlines()
+    rows = [row.replace(".", ",") for row in rows]
+    path.write_text("\n".join([header, *["0,0,0,3,0,0,0,0"] * 300, *rows]))
+    with pytest.raises(ValueError, match=r"row 301 has more cells than its header has names \(8\)"):
         records.load(path)
 
 

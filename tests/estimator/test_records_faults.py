@@ -62,6 +62,27 @@ def test_more_friction_than_there_can_be_is_told(table):
     assert "tangential force is" in told(lifted(table).assign(f_n=lambda f: (f["f_n"] - 5.5).clip(-0.2)))
 
 
+@pytest.mark.parametrize("zero", [-1.8, -2.0, -2.3])
+def test_a_slip_with_too_little_normal_force_is_named(zero):
+    """Zeroed in a grip of 2 N f_n is below zero in a quarter of the slip, but not by a tenth of its peak."""
+    frame = shipped().assign(f_n=lambda table: table["f_n"] + zero)
+    line = told(frame)
+    assert "% of the slip f_n is less than a third of the tangential force, down to -" in line
+    assert "zeroed in the grip" in line
+    record = records.from_arrays(frame)
+    report = records.report(records.estimate(record))
+    assert "mu_c: not observed: this is the start value, although 102 samples slip: f_n is below" in report
+    assert "slip with translation" not in report
+
+
+def test_noise_and_zero_errors_in_a_light_grip_are_no_fault(table):
+    """A grip of 0.4 N on rubber of friction 1, with a zero error of -0.1 N and noise of 0.05 N."""
+    light = table.assign(f_n=0.08 * table["f_n"], tau=0.0 * table["tau"])
+    noise = 0.05 * np.random.default_rng(1).standard_normal(len(light))
+    light = light.assign(f_y=light["f_n"], f_n=light["f_n"] - 0.1 + noise)
+    assert "zeroed in the grip" not in told(light)
+
+
 def test_the_grippers_own_force(table, mapping):
     own = table.assign(motor=1.1e3 * table["f_n"])
     columns = mapping("grip: {column: motor, unit: mN}")
@@ -105,6 +126,18 @@ def test_a_channel_that_is_frozen_from_the_beginning_is_told(table, change, mess
     table = shipped() if "v_x" in change else table
     frozen = table.assign(**{name: table[name] * 0.0 + value for name, value in change.items()})
     assert message in told(frozen)
+
+
+@pytest.mark.parametrize("way", [("cop_x", "cop_y"), ("tau_x", "tau_y")])
+def test_a_frozen_force_is_named_beside_a_cop_that_moves(table, way):
+    """The CoP changes the torque alone."""
+    there = 0.0 * table["f_n"]
+    moving = table.assign(**{name: there + 1e-3 * np.sin(table["t"]) for name in way})
+    assert told(moving) == ""
+    assert "f_n never changes" in told(moving.assign(f_n=5.0 + there))
+    still = {"f_x": 0.3, "f_y": 1.0, "f_n": 5.0, "tau": 0.01}
+    line = told(moving.assign(**{name: value + there for name, value in still.items()}))
+    assert "no force ever changes" in line
 
 
 @pytest.mark.parametrize("offset", [0.05, -0.06, 0.2, -0.4])

@@ -74,6 +74,19 @@ def test_arrays_and_frames(table, plain):
     assert records.estimate(together).estimates.tobytes() == records.estimate(plain).estimates.tobytes()
 
 
+@pytest.mark.parametrize("fill", [0.0, 99.0])
+def test_a_masked_cell_is_an_empty_one(table, plain, fill):
+    masked = {name: np.ma.masked_array(cells.fillna(fill), cells.isna()) for name, cells in table.items()}
+    assert_same(records.from_arrays(masked), plain)
+    masked["f_x"] = np.ma.masked_where(np.arange(len(table)) == 0, masked["f_x"])
+    with pytest.raises(ValueError, match="row 1: f_x is empty or NaN"):
+        records.from_arrays(masked)
+    masked["f_x"] = np.ma.masked_array(np.zeros(len(table), int), table["f_n"].isna())
+    assert (records.from_arrays(masked).wrench[:, 0] == 0.0).all()
+    with pytest.raises(ValueError, match="one shape"):
+        records.from_arrays(masked | {"tau": np.ma.masked_all((3, 2))})
+
+
 def test_units_and_signs_of_arrays(table, plain, mapping):
     forces, velocities = streams(table)
     there = forces.assign(t=1e3 * forces["t"], Fz=-forces["f_n"]).drop(columns="f_n")

@@ -84,6 +84,32 @@ def test_the_unit_in_a_name_counts(table, save, mapping):
     np.testing.assert_allclose(read.force_t, records.load(save(table, "plain.csv")).force_t, rtol=1e-12)
 
 
+@pytest.mark.parametrize("unit", ["lbf", "%", "?", "-", "raw", "left"])
+@pytest.mark.parametrize("place", ["row", "name"])
+def test_an_unknown_unit_is_refused_unless_the_mapping_states_it(table, save, mapping, unit, place):
+    path, name = save(table, "plain.csv"), f"f_n [{unit}]" if place == "name" else "f_n"
+    plain, text = records.load(path), path.read_text().replace("f_n", name, 1)
+    path.write_text(units_row(text, f_n=unit) if place == "row" else text)
+    with pytest.raises(ValueError, match=r"plain\.csv: f_n.*: unknown unit .*valid: N, mN, kN; .*scale: …"):
+        records.load(path, mapping(f"f_n: '{name}'"))
+    same(records.load(path, mapping(f"f_n: {{column: '{name}', unit: N}}")), plain)
+    scaled = records.load(path, mapping(f"f_n: {{column: '{name}', scale: 2}}"))
+    np.testing.assert_array_equal(scaled.wrench[:, 2], 2.0 * plain.wrench[:, 2])
+
+
+@pytest.mark.parametrize(("key", "name"), [("f_n", "Fz [1]"), ("f_n", "Fz []"), ("t", "time (sec)")])
+def test_a_place_is_no_unit_and_seconds_have_long_names(table, save, mapping, key, name):
+    path = save(table.rename(columns={key: name}))
+    same(records.load(path, mapping(f"{key}: '{name}'")), records.load(save(table, "plain.csv")))
+
+
+def test_a_column_of_dates_states_its_unit_itself(table, save, mapping):
+    dates = pd.to_datetime(1.7e9 + table["t"], unit="s")
+    path = save(table.assign(**{"Time (UTC)": dates}).drop(columns="t"), "log.parquet")
+    read = records.load(path, mapping("t: Time (UTC)"))
+    np.testing.assert_allclose(np.ptp(read.force_t), np.ptp(table["t"][table["f_n"].notna()]), atol=1e-6)
+
+
 def test_a_name_with_spaces_may_be_mapped(table, save, mapping):
     path = save(table.rename(columns={"f_x": " f_x "}), "log.parquet")
     same(records.load(path, mapping('f_x: " f_x"')), records.load(save(table, "plain.parquet")))

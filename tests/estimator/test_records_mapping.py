@@ -67,6 +67,19 @@ def test_streams_of_two_lengths_have_two_times(table, tmp_path):
     assert (tmp_path / "m.png").read_bytes().startswith(b"\x89PNG")
 
 
+def test_a_unit_of_the_file_is_proposed_and_an_unknown_one_is_left_open(table, save):
+    """No magnitude decides against the file, whether a row below the header states the unit or a name."""
+    path = save(table.rename(columns={"f_x": "f_x [mN]", "f_y": "f_y [lbf]"}))
+    header, rows = path.read_text().split("\n", 1)
+    units = ",".join({"t": "s", "tau": "N mm", "omega": "rpm"}.get(name, "") for name in header.split(","))
+    path.write_text("\n".join([header, units, rows]))
+    text = proposal.text_of_fingers(proposal.propose_fingers(path)[0])
+    assert "f_x: {column: 'f_x [mN]', unit: 'mN'}" in text
+    assert "tau: {column: 'tau', unit: 'N mm'}" in text
+    assert "f_y: {column: 'f_y [lbf]'}  # unknown unit 'lbf'" in text
+    assert "omega: {column: 'omega'}  # unknown unit 'rpm'" in text
+
+
 def test_what_is_missing_is_said(table, save):
     log = save(table.drop(columns=["tau", "omega"]), "log.csv")
     done = CliRunner().invoke(app, [str(log)])

@@ -8,8 +8,9 @@ import pandas as pd
 import pytest
 
 from estimator import records
+from estimator.records import proposal
 from tests.estimator import bag_files
-from tests.estimator.bag_files import BAG, BAGS, TWIST, header, two, write_mcap
+from tests.estimator.bag_files import BAG, BAGS, FORCE, TWIST, header, two, write_mcap
 
 
 def same(first, second):
@@ -134,6 +135,35 @@ def test_a_sheet_is_read_as_a_csv_file(table, save, tmp_path, mapping):
     read, plain = records.load(tmp_path / "log.xlsx"), records.load(save(table, "plain.parquet"))
     np.testing.assert_allclose(read.wrench, plain.wrench, rtol=1e-14)
     np.testing.assert_array_equal(read.twist_t, plain.twist_t)
+
+
+@pytest.mark.parametrize("side", [[["Operator", "Smith"], ["Gripper", "G1"]], [["mass [g]", 200]], [[1, 2]]])
+def test_columns_of_a_workbook_are_named_by_their_sheet(table, save, tmp_path, mapping, side):
+    """What `slipgym map` proposes can be read, beside a sheet of notes, which may have numbers alone."""
+    pytest.importorskip("openpyxl")
+    table = table[table["t"] < 0.2].round(9)  # the digits that a cell keeps
+    with pd.ExcelWriter(tmp_path / "log.xlsx") as book:
+        pd.DataFrame(side).to_excel(book, sheet_name="Info", header=False, index=False)
+        table.to_excel(book, sheet_name="Data", index=False)
+        table.to_excel(book, sheet_name="again", index=False)
+    with pytest.raises(ValueError, match=r"f_x may be Data/f_x, again/f_x"):
+        records.load(tmp_path / "log.xlsx")
+    plain, names = records.load(save(table, "plain.parquet")), ("t", *FORCE, *TWIST)
+    own = mapping("\n".join(f"{name}: Data/{name}" for name in names))
+    same(records.load(tmp_path / "log.xlsx", own), plain)
+    proposed = proposal.text_of_fingers(proposal.propose_fingers(tmp_path / "log.xlsx")[0])
+    assert "f_x: {column: 'Data/f_x'" in proposed
+    same(records.load(tmp_path / "log.xlsx", mapping(proposed)), plain)
+
+
+def test_a_sheet_that_cannot_be_read_is_named(tmp_path):
+    book = pytest.importorskip("openpyxl").Workbook()
+    book.active.title = "run 3"
+    for row in ([1.0, 2.0], ["1", "2"]):
+        book.active.append(row)
+    book.save(tmp_path / "log.xlsx")
+    with pytest.raises(ValueError, match=r"log\.xlsx: .*sheet 'run 3': no line of names"):
+        records.load(tmp_path / "log.xlsx")
 
 
 @pytest.mark.parametrize("kind", BAGS)

@@ -2,9 +2,11 @@
 
 import numpy as np
 import pytest
+from typer.testing import CliRunner
 
 from estimator.records import load_columns
 from lab.simulated_gripper import draw_gripper, simulated_log, write_log
+from policies.commands.map import app
 from slipgym.identification import read_log
 
 
@@ -82,6 +84,30 @@ def test_velocities_of_another_clock_are_refused(log, tmp_path, change, message)
     own = pandas.read_csv(tmp_path / "whole.csv")[["t", *SLIP]].iloc[::3]
     with pytest.raises(ValueError, match=message):
         read_log(rows_between(log, change(own), tmp_path))
+
+
+def test_a_command_of_an_unknown_unit_is_refused(log, tmp_path):
+    write_log(log, tmp_path / "log.csv")
+    (tmp_path / "mapping.yaml").write_text("force: 'force [%]'")
+    text = (tmp_path / "log.csv").read_text()
+    (tmp_path / "log.csv").write_text(text.replace("force", "force [%]", 1))
+    with pytest.raises(ValueError, match=r"force \[%\]: unknown unit '%'; .*`force: \{scale: …\}`"):
+        read_log(tmp_path / "log.csv", load_columns(tmp_path / "mapping.yaml"))
+
+
+def test_a_proposal_without_a_slip_sensor_goes_on_with_identify(log, tmp_path):
+    pandas = pytest.importorskip("pandas")
+    write_log(log, tmp_path / "whole.csv")
+    frame = pandas.read_csv(tmp_path / "whole.csv").drop(columns=SLIP)
+    frame.to_csv(tmp_path / "log.csv", index=False)
+    said = CliRunner().invoke(app, [str(tmp_path / "log.csv"), "--output", str(tmp_path / "m.yaml")]).output
+    assert "slipgym estimate does not take it" in said
+    assert f"slipgym identify {tmp_path / 'log.csv'} --columns {tmp_path / 'm.yaml'}" in said
+    frame.drop(columns="force").to_csv(tmp_path / "log.csv", index=False)
+    (tmp_path / "m.yaml").unlink()
+    said = CliRunner().invoke(app, [str(tmp_path / "log.csv"), "--output", str(tmp_path / "m.yaml")]).output
+    assert "slipgym estimate does not take it" in said
+    assert "slipgym identify" not in said
 
 
 def test_a_refusal_names_the_row_of_the_file(log, tmp_path):

@@ -100,17 +100,19 @@ def test_an_error_while_writing_leaves_nothing(tmp_path, monkeypatch):
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.parametrize("finger", [1, 2])
-def test_a_record_gives_the_environments_own_estimates(tmp_path, finger):
-    """A record begins after the grasp: this holds for estimators that learn nothing before it."""
+@pytest.mark.parametrize(
+    ("name", "finger"), [("disc", 1), ("disc", 2), ("rls", 1), ("joint", 2), ("ukf", 1), ("adaptive", 1)]
+)
+def test_a_record_gives_the_environments_own_estimates(tmp_path, name, finger):
+    """A record begins after the grasp, in which only "adaptive" learns: it stays within one deviation."""
     keywords = {
-        "estimator": "disc",
+        "estimator": name,
         "material": "wood",
         "config": {"contact": {"cop_offset": [[0.002, 0.0], [0.0, -0.001]]}},
     }
     frame = record_sensors("LinearSlip", "linear_slip", finger, seed=3, options=OPTIONS, **keywords)
     frame.to_parquet(tmp_path / "log.parquet")
-    result = records.estimate(records.load(tmp_path / "log.parquet"), "disc")
+    result = records.estimate(records.load(tmp_path / "log.parquet"), name)
     env = gym.make("slipgym:slipgym/LinearSlip-v0", **keywords)
     policy, state, over = policies.make("linear_slip"), None, False
     observation, _ = env.reset(seed=3, options=OPTIONS)
@@ -121,8 +123,12 @@ def test_a_record_gives_the_environments_own_estimates(tmp_path, finger):
         estimated.append(info["estimated_per_finger"][finger - 1])
         over = terminated or truncated
     env.close()
-    ours = np.column_stack([result.estimates[name] for name in ("mu_s", "mu_c", "r")])
-    np.testing.assert_allclose(ours, estimated, rtol=1e-9)
+    ours = np.column_stack([result.estimates[value] for value in ("mu_s", "mu_c", "r")])
+    if name == "adaptive":
+        stated = np.column_stack([result.estimates[f"sd_{value}"] for value in ("mu_s", "mu_c", "r")])
+        assert (np.abs(ours - estimated) < stated).all()
+    else:
+        np.testing.assert_allclose(ours, estimated, rtol=1e-9)
     assert result.estimates[-1]["updates_mu_c"] > 0
 
 
