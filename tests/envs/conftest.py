@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from slipgym.registration import ENVIRONMENTS
+from tests.envs.printing import exactly
 
 IDS = tuple(ENVIRONMENTS)
 ROOT = Path(__file__).resolve().parents[2]
@@ -85,11 +86,7 @@ def python() -> Callable[..., str]:
 
 @pytest.fixture(autouse=True)
 def exact_printing() -> Iterator[None]:
-    """Arrays are printed with all digits, or, since numpy 2, as their bytes, which is much faster."""
-    digits: dict[str, Any] = {"precision": 17, "floatmode": "unique", "threshold": 10_000}
-    if np.lib.NumpyVersion(np.__version__) >= "2.0.0":
-        digits = {"override_repr": lambda array: f"{array.dtype}{array.shape}{array.tobytes().hex()}"}
-    with np.printoptions(**digits):
+    with exactly():
         yield
 
 

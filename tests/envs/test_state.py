@@ -12,10 +12,14 @@ import pytest
 pytestmark = pytest.mark.quick_tasks
 
 ACTIONS = np.random.default_rng(0).uniform(-1.0, 0.3, (120, 1)).astype(np.float32)
-CONTINUE = "import pickle, sys; env, actions = pickle.load(sys.stdin.buffer); import numpy as np; " + (
-    "np.set_printoptions(precision=17, floatmode='unique'); "
-    "print([repr(env.step(a)) for a in actions]); env.close()"
-)
+CONTINUE = """
+import pickle, sys
+from tests.envs.printing import exactly
+env, actions = pickle.load(sys.stdin.buffer)
+with exactly():
+    print([repr(env.step(a)) for a in actions])
+env.close()
+"""
 
 
 def go_on(env, actions) -> list[str]:

@@ -100,6 +100,7 @@ def test_environments_run_with_the_configuration(result, folder, engine):
     env.close()
 
 
+@pytest.mark.slow
 def test_the_same_log_gives_the_same_bits(result):
     again = identify(simulated_log(GRIPPER, names=("press", "slide x")))
     assert again.point.tobytes() == result.point.tobytes()

@@ -19,6 +19,7 @@ def test_the_truth_is_that_of_the_present_load_and_age():
     assert truth["r"] == pytest.approx(0.011)
 
 
+@pytest.mark.slow
 def test_the_leaderboard_of_policies_takes_an_estimator_of_ones_own(tmp_path):
     """Without the laboratory it says what the controllers solve with it."""
     words = ["hold", "--level", "easy", "--episodes", "2", "--output", str(tmp_path)]

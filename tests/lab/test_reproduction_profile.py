@@ -75,6 +75,7 @@ def folder(tmp_path_factory):
         return reproduce_profile(tmp_path_factory.mktemp("runs"), seeds=2, progress=False)
 
 
+@pytest.mark.slow
 def test_the_command_writes_what_it_names(folder):
     names = {"series.csv", "phases.csv", "events.csv", "table.md", "versions.json"}
     assert {path.name for path in folder.iterdir()} == names | {"ideal.png", "realistic.png"}
