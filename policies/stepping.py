@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 import gymnasium as gym
 import numpy as np
 
+from estimator.suggestions import brief
 from policies.learned import LearnedPolicy
 from policies.registry import Policy
 
@@ -61,10 +62,19 @@ def steps(env: Any, policy: Policy, observation: Any) -> Iterator[Step]:
     """
     state, over = None, False
     while not over:
-        action, state = policy.predict(observation, state=state)
+        action, state = _acted(policy, policy.predict(observation, state=state))
         step = Step(*env.step(action))
         observation, over = step.observation, step.over
         yield step
+
+
+def _acted(policy: Policy, given: Any) -> tuple[Any, Any]:
+    """What `predict` returned, checked."""
+    if isinstance(given, tuple) and len(given) == 2:
+        return given
+    raise TypeError(
+        f"{type(policy).__name__}.predict must return the action and the next state, got {brief(repr(given))}"
+    )
 
 
 class BatchStep(NamedTuple):
@@ -88,7 +98,7 @@ def batch_steps(envs: Any, policy: Policy, observations: Any) -> Iterator[BatchS
     state, begun = None, np.ones(envs.num_envs, dtype=bool)
     running = np.ones(envs.num_envs, dtype=bool)
     while running.any():
-        actions, state = policy.predict(observations, state, begun)
+        actions, state = _acted(policy, policy.predict(observations, state, begun))
         observations, rewards, terminated, truncated, infos = envs.step(actions)
         ended = running & (terminated | truncated)
         yield BatchStep(observations, rewards, infos, running, ended)

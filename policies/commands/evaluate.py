@@ -1,5 +1,6 @@
 """Compares policies by what they know about friction."""
 
+from contextlib import ExitStack
 from pathlib import Path
 from typing import Annotated
 
@@ -100,8 +101,10 @@ def _outcome(policy: str, episodes: int, first: int | None, task: str | None, te
 
     from policies.evaluation import one_policy
 
-    with usage_errors(FileNotFoundError, TypeError, ValueError):
-        changes = environment_arguments(texts)
-        start = one_policy.FRESH if first is None else first
-        found = one_policy.episodes(policy, episodes, start, task, changes)
+    start = one_policy.FRESH if first is None else first
+    with ExitStack() as stack:
+        with usage_errors(FileNotFoundError, TypeError, ValueError):
+            changes = environment_arguments(texts)
+            acting = stack.enter_context(one_policy.opened(policy, task, changes))
+        found = one_policy.played(*acting, episodes, start)
         return one_policy.outcome(policy, list(tqdm(found, total=episodes, disable=None, leave=False)))

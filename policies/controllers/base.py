@@ -236,10 +236,10 @@ class ForcePolicy(ABC):
         columns = Columns(np.atleast_2d(observations), self.index, self.needs_slip)
         returned = self.control(columns, self._memory(state, episode_start, len(columns)))
         pair = isinstance(returned, tuple) and len(returned) == 2
-        if not pair or np.shape(returned[0])[:1] != (len(columns),):
+        if not pair or np.shape(returned[0])[:1] != (len(columns),) or np.iscomplexobj(returned[0]):
             raise ValueError(
                 f"{type(self).__name__}.control must return the commands of {len(columns)} rows and the "
-                f"memory, got {returned!r:.80}"
+                f"memory, real numbers, got {returned!r:.80}"
             )
         commands, state = returned
         actions = self._action(np.asarray(commands), columns)

@@ -77,7 +77,9 @@ configuration; docs/rewards.md explains them."""
 
 _STARTING = """\
 Every task samples the material, if `material` is "random", the sensors' biases, and the fractions of a count
-in the slip sensors. Grip and sensors run for six control steps before time 0."""
+in the slip sensors. Grip and sensors run for six control steps before time 0. A weight that hangs in the grip
+comes on at once in the first of them: the pads' stick overshoots, and a grip (`initial_force`) less than a
+tenth above the least one may let the object go."""
 
 _REWARD_TERMS = (
     "`reward_terms`",

@@ -87,7 +87,14 @@ def test_without_the_friction_part_the_error_says_so():
 
 
 @pytest.mark.parametrize(
-    "returned", [np.ones(2), (np.ones(2),), (1.0, np.ones((2, 1))), (np.ones(3), np.ones((2, 1)))]
+    "returned",
+    [
+        np.ones(2),
+        (np.ones(2),),
+        (1.0, np.ones((2, 1))),
+        (np.ones(3), np.ones((2, 1))),
+        (1j * np.ones(2), np.ones((2, 1))),
+    ],
 )
 def test_what_control_has_to_return_is_named(returned):
     class Wrong(Counter):

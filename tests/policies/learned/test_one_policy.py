@@ -1,5 +1,6 @@
 """`slipgym evaluate --policy` runs a policy where it was trained."""
 
+import numpy as np
 import pytest
 from typer.testing import CliRunner
 
@@ -36,6 +37,33 @@ def test_the_episodes_are_held_out(monkeypatch):
     )
     list(episodes("hold", 2, first=7, changes=SHORT))
     assert used == [seeds.held_out(7), seeds.held_out(8)]
+
+
+class Alone:
+    """A policy that forgets the state."""
+
+    def predict(self, observation, state=None, episode_start=None, deterministic=True):
+        return np.zeros(1, np.float32)
+
+
+class Failing(Alone):
+    """A policy with a fault of its own."""
+
+    def predict(self, observation, state=None, episode_start=None, deterministic=True):
+        return np.zeros(3) + np.zeros(2), None
+
+
+@pytest.mark.parametrize(
+    ("policy", "error", "message"),
+    [
+        (Alone, TypeError, "Alone.predict must return the action and the next state, got array"),
+        (Failing, ValueError, "broadcast"),
+    ],
+)
+def test_an_error_of_a_policy_that_acts_is_no_fault_of_the_command_line(policy, error, message):
+    words = "--task", "hold", "--trials", "1", "--set", "engine=planar"
+    with pytest.raises(error, match=message):
+        evaluated(f"{__name__}:{policy.__name__}", *words)
 
 
 def test_the_environment_is_that_of_the_training_unless_told_otherwise(policy_folder):
