@@ -64,6 +64,6 @@ def test_a_hundred_thousand_environments_at_once():
 @pytest.mark.skipif(not Path("/proc/self/statm").exists(), reason="Linux alone says so")
 def test_an_environment_with_pybullet_takes_tens_of_megabytes():
     """In a new process: what other tests have freed would be used again."""
-    command = "from lab.benchmarking.run import bytes_with_pybullet as f; print(f(count=5))"
+    command = "from lab.benchmarking.memory import bytes_with_pybullet as f; print(f(count=5))"
     done = subprocess.run([sys.executable, "-c", command], cwd=ROOT, capture_output=True, check=True)
     assert 10.0 < float(done.stdout) / 2**20 < 60.0
