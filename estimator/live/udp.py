@@ -23,13 +23,16 @@ def opened(host: str = "127.0.0.1", port: int = PORT) -> socket.socket:
     """A socket to serve on; by default only programs of this machine reach it.
 
     Raises:
-        OSError: The address is taken or none of this machine's.
+        OSError: The address is taken or none of this machine's; the message names it.
     """
     door = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     try:
         door.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 1 << 20)
         door.bind((host, port))
         door.settimeout(TICK)
+    except OSError as error:
+        door.close()
+        raise OSError(error.errno, f"{host}:{port} (UDP): {error.strerror or error}") from error
     except BaseException:
         door.close()
         raise

@@ -49,8 +49,11 @@ def test_a_start_that_fails_leaves_the_log_as_it_was(fault, there, running, tmp_
     before = path.read_bytes() if there else None
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as taken:
         taken.bind(("127.0.0.1", 0))
-        words = ["--port", taken.getsockname()[1]] if fault == "port" else ["--port", 0, "--policy", "nobody"]
-        assert start(*words, "--log", path).exit_code == 2
+        port = taken.getsockname()[1]
+        words = ["--port", port] if fault == "port" else ["--port", 0, "--policy", "nobody"]
+        done = start(*words, "--log", path)
+    assert done.exit_code == 2
+    assert (f"127.0.0.1:{port}" if fault == "port" else "nobody") in done.output
     assert (path.read_bytes() if path.exists() else None) == before
 
 
