@@ -12,11 +12,11 @@ from typing import Any
 from estimator.live.hand import Hand, Output
 from estimator.live.source import Source
 from estimator.online import TWIST, WRENCH, OnlineEstimator, make
+from estimator.records.units import TILT
 from estimator.registry import DEFAULT
 from estimator.suggestions import asking, brief
 
 CLOCKS = ("stamps", "arrival")
-TILT = ("tau_x", "tau_y")
 KINDS = {"wrench": "force", "twist": "velocity"}
 APART = 0.05
 """Difference of the clocks of a finger's sensors that is a warning [s]; networks delay by less."""

@@ -77,9 +77,9 @@ configuration; docs/rewards.md explains them."""
 
 _STARTING = """\
 Every task samples the material, if `material` is "random", the sensors' biases, and the fractions of a count
-in the slip sensors. Grip and sensors run for six control steps before time 0. A weight that hangs in the grip
-comes on at once in the first of them: the pads' stick overshoots, and a grip (`initial_force`) less than a
-tenth above the least one may let the object go."""
+in the slip sensors. Grip and sensors run for six control steps before time 0. The pads begin
+without a load. A weight that hangs in the grip overshoots as it comes on, so that a grip (`initial_force`)
+just above the least one may let the object go; the higher friction is, the larger is that range."""
 
 _REWARD_TERMS = (
     "`reward_terms`",

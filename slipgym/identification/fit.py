@@ -31,7 +31,7 @@ STARTS, KEPT = 64, 6
 """Points sampled from the prior, and those from which a fit of a pad without cells begins."""
 FAR = 3.0
 """Held-out residual over the noise from which the model does not fit the log [-]."""
-STRANGE = 4.0
+IMPLAUSIBLE = 4.0
 """Distance from the prior, over its deviation, from which a value shows a fault of the log [-]."""
 STEP = 1e-3
 """Of the finite differences, over the prior's deviation [-]."""
@@ -77,10 +77,10 @@ class Result:
         ratios = self.held_out / self.noise
         return {name: float(each) for name, each in zip(CHANNELS, ratios, strict=True) if each > FAR}
 
-    def strange(self) -> dict[str, float]:
-        """Distance from the prior over its deviation, of the parameters where it is above `STRANGE`."""
+    def implausible(self) -> dict[str, float]:
+        """Distance from the prior over its deviation, of the parameters where it is above `IMPLAUSIBLE`."""
         away = np.abs(self.point - START) / DEVIATION
-        return {name: float(each) for name, each in zip(NAMES, away, strict=True) if each > STRANGE}
+        return {name: float(each) for name, each in zip(NAMES, away, strict=True) if each > IMPLAUSIBLE}
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ import numpy as np
 
 from slipgym.config import load
 from slipgym.contact.pressure import OUTER_RADII
-from slipgym.identification.fit import FAR, STRANGE, Result
+from slipgym.identification.fit import FAR, IMPLAUSIBLE, Result
 from slipgym.identification.motions import gains
 from slipgym.identification.parameters import DEVIATION, NAMES, PARAMETERS, START, values_of
 from slipgym.identification.rollout import CHANNELS
@@ -62,10 +62,10 @@ def overrides(result: Result) -> dict[str, Any]:
 def table(result: Result) -> str:
     """The parameters with their 90 % intervals, as Markdown."""
     lines = ["| parameter | value | 90 % interval | |", "|---|---|---|---|"]
-    values, interval, strange = values_of(result.point), result.interval(), result.strange()
+    values, interval, implausible = values_of(result.point), result.interval(), result.implausible()
     for each, v, (low, high), shown in zip(PARAMETERS, values, interval, result.shown, strict=True):
         note = "" if shown else "this log does not show it: the prior"
-        if each.name in strange:
+        if each.name in implausible:
             note = f"far from the prior {each.prior:g}"
         lines.append(f"| {each.name} [{each.unit}] | {v:.4g} | {low:.4g} to {high:.4g} | {note} |")
     return "\n".join(lines)
@@ -73,30 +73,30 @@ def table(result: Result) -> str:
 
 def verdict(result: Result) -> str:
     """Whether the model fits the log, and which values are those of no gripper, in a few sentences."""
-    strange = _strange(result)
+    implausible = _implausible(result)
     if misfits := result.misfits():
         far = ", ".join(f"{name} {ratio:.1f}" for name, ratio in misfits.items())
         doubt = (
             f"The model does not fit this log: held-out residuals over the noise are {far}. "
             "Trust neither the parameters nor their intervals."
         )
-        return f"{doubt} Values of no usual gripper: {strange}" if strange else doubt
-    if strange:
-        return f"The model fits this log only with values of no usual gripper: {strange}"
+        return f"{doubt} Values of no usual gripper: {implausible}" if implausible else doubt
+    if implausible:
+        return f"The model fits this log only with values of no usual gripper: {implausible}"
     return f"The model fits this log: every held-out residual is within {FAR:g} times the noise."
 
 
-def _strange(result: Result) -> str:
+def _implausible(result: Result) -> str:
     """Names the values that are far from their priors, and of what they are a sign; empty if none is."""
-    values, strange = dict(zip(NAMES, values_of(result.point), strict=True)), result.strange()
-    ends = values_of(START + STRANGE * DEVIATION * np.array([[-1.0], [1.0]])).T
+    values, away = dict(zip(NAMES, values_of(result.point), strict=True)), result.implausible()
+    ends = values_of(START + IMPLAUSIBLE * DEVIATION * np.array([[-1.0], [1.0]])).T
     lines = []
     for each, (low, high) in zip(PARAMETERS, ends, strict=True):
-        if each.name in strange:
+        if each.name in away:
             unit = "" if each.unit == "-" else f" {each.unit}"
             lines.append(
-                f"{each.name} = {values[each.name]:.4g}{unit}, {strange[each.name]:.1f} deviations from the "
-                f"prior {each.prior:g}{unit} ({STRANGE:g} are {low:.2g} to {high:.2g}{unit})"
+                f"{each.name} = {values[each.name]:.4g}{unit}, {away[each.name]:.1f} deviations from the "
+                f"prior {each.prior:g}{unit} ({IMPLAUSIBLE:g} are {low:.2g} to {high:.2g}{unit})"
             )
     advice = (
         "Is a unit, a sign, a zero or a column of the log wrong? Correct the mapping, and identify again."
