@@ -1,8 +1,8 @@
-"""Measures what learning from nothing depends on the seed: the same training with five seeds."""
+"""Measures how learning depends on the seed: the same training with five seeds."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -15,11 +15,15 @@ from policies.policy_leaderboard.entries import Member
 from policies.policy_leaderboard.run import WORLDS, play_in
 from policies.training import curve, export, files, folder, run_set
 from policies.training.config import Training
+from policies.versions import stamped
 from slipgym.tasks import find
+
+PASSES = {"carry_lab": ("carry_lab_start", "carry_lab", "carry_lab")}
+"""Configurations that a policy went through, each from the result of the one before; docs/from_nothing.md."""
 
 
 class Trained(NamedTuple):
-    """The policy of one seed."""
+    """The policy of one seed; steps and seconds are of all its passes."""
 
     policy: Path
     steps: int
@@ -31,39 +35,59 @@ def trained(name: str, seeds: Sequence[int], root: Path, jobs: int) -> dict[int,
 
     Args:
         name: Of a configuration that comes with slipgym.
-        seeds: Seeds of the trainings.
+        seeds: Seeds of the trainings, in every pass.
         root: Folder of the sets of runs.
         jobs: Runs at once.
     """
-    config = files.load(name)
-    found = _finished(root, config)
+    found: dict[int, Trained] = {}
+    for one in PASSES.get(name, (name,)):
+        found = _after(found, files.load(one), seeds, root, jobs)
+    return found
+
+
+def _after(
+    before: Mapping[int, Trained], config: Training, seeds: Sequence[int], root: Path, jobs: int
+) -> dict[int, Trained]:
+    """One pass of each seed, on from its policy before."""
+    wanted = dict.fromkeys(seeds, config)
+    for seed, start in before.items():
+        wanted[seed] = files.changed(config, {"privileged_ppo.start": str(start.policy)}, "the pass before")
+    found = _finished(root, wanted)
     if missing := [seed for seed in seeds if seed not in found]:
-        run_set.train_all(run_set.begin(config, missing, [], root), jobs)
-        found = _finished(root, config)
-    return {seed: found[seed] for seed in seeds}
+        path = stamped(root, f"{find(config.task).key}__{config.algorithm}")
+        for seed in missing:
+            folder.begin(path / f"{config.environment.friction_source}__{seed}", wanted[seed], seed)
+        run_set.train_all(path, jobs)
+        found = _finished(root, wanted)
+    nothing = Trained(Path(), 0, 0.0)
+    return {seed: _sum(before.get(seed, nothing), found[seed]) for seed in seeds}
 
 
-def _finished(root: Path, wanted: Training) -> dict[int, Trained]:
-    """Of the runs with just this configuration, by seed."""
+def _sum(before: Trained, last: Trained) -> Trained:
+    return Trained(last.policy, before.steps + last.steps, before.cpu_seconds + last.cpu_seconds)
+
+
+def _finished(root: Path, wanted: Mapping[int, Training]) -> dict[int, Trained]:
+    """Of the runs with just the configuration of their seed."""
     found = {}
     for order in sorted(root.glob("*/*/run.yaml")):
         config, seed = folder.order(order.parent)
         result = folder.result(order.parent)
-        if config == wanted and result is not None:
+        if config == wanted.get(seed) and result is not None:
             best = curve.best(folder.read_curve(order.parent), config.evaluation.episodes)
             found[seed] = Trained(order.parent / export.POLICY, best.steps, result["cpu_seconds"])
     return found
 
 
 def row(name: str, policies: Sequence[Trained], episodes: int) -> dict[str, object]:
-    """What the seeds' policies solve, each of the same episodes that no training used [%]."""
+    """What the seeds' policies solve in the world of their training, of the same episodes for all [%]."""
     shares = []
     for each in policies:
         policy = LearnedPolicy(each.policy)
         where = policy.description.environment
-        task, arguments = find(where.id).name, {"friction_source": "true", **policy.modes}
-        member = Member(name, policy, arguments)
-        level = str(where.arguments["level"])
+        own = {key: where.arguments[key] for key in ("friction_source", "sensors", "randomization")}
+        member = Member(name, policy, {**own, **policy.modes})
+        task, level = find(where.id).name, str(where.arguments["level"])
         shares.append(100.0 * float(play_in(WORLDS[0], task, level, member, episodes, {}).success.mean()))
     mean, low, high = over_seeds(shares)
     cpu = [each.cpu_seconds for each in policies]
