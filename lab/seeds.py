@@ -51,7 +51,7 @@ def _after(
     """One pass of each seed, on from its policy before."""
     wanted = dict.fromkeys(seeds, config)
     for seed, start in before.items():
-        wanted[seed] = files.changed(config, {"privileged_ppo.start": str(start.policy)}, "the pass before")
+        wanted[seed] = files.changed(config, {"privileged_ppo.start": str(start.policy.resolve())})
     found = _finished(root, wanted)
     if missing := [seed for seed in seeds if seed not in found]:
         path = stamped(root, f"{find(config.task).key}__{config.algorithm}")
