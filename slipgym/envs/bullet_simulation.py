@@ -106,7 +106,7 @@ def _open(fixed, starts, fresh):
 
 @cache
 def _compiled_step(
-    task: Any, update: Any, force_torque: np.dtype, cells: int
+    task: Any, update: tuple[Any, Any], force_torque: np.dtype, cells: int
 ) -> tuple[Any, Any, dict[str, Any]]:
     """Pointers to the stages, the type of what is fixed, and the four programs of this file by name."""
     stages = compiled_stages(task, update, force_torque, cells)

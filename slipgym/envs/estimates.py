@@ -3,12 +3,14 @@
 import math
 from collections.abc import Mapping
 from dataclasses import asdict, fields
+from textwrap import shorten
 from typing import Any
 
 import numpy as np
+from numba.core.errors import NumbaError
 
 import estimator as estimators
-from estimator._numba.entry_point import entry_point
+from estimator._numba.entry_point import entry_point, update_signature
 from estimator.estimate import COMMON_STATE
 from estimator.registry import specification
 from slipgym._numba.compiled import compiled
@@ -88,6 +90,39 @@ def make_estimators(choice: dict[str, Any] | None, config: Config, n: int) -> es
     start = estimators.make_batch(estimators.DEFAULT, 1).estimates[0]
     stated = {f"{name}0": start[name] for name in ("mu_s", "mu_c", "r")}
     return estimators.make_batch("rls", n, **stated)
+
+
+def compiled_update(fingers: estimators.BatchEstimator) -> tuple[Any, Any]:
+    """The `update_batch` of estimators, and the signature that it is compiled for.
+
+    Raises:
+        ValueError: That of an estimator of one's own does not compile.
+    """
+    update = specification(fingers.name).update_batch
+    signature = update_signature(fingers.states.dtype, fingers.parameters_array.dtype)
+    try:
+        if signature.args not in update.overloads:
+            update.compile(signature)
+    except (AttributeError, KeyError, NumbaError, RuntimeError, TypeError) as error:
+        raise ValueError(
+            f"estimator {fingers.name!r}: update_batch must be a function of numba.njit without a signature "
+            f"of its own: {_first_line(error)}"
+        ) from None
+    return update, signature
+
+
+def _first_line(error: Exception) -> str:
+    """What is wrong, of an error of numba with its place; KeyError(name): an array without such a field."""
+    if isinstance(error, KeyError):
+        return f"no array has a field {error.args[0]!r}"
+    loc = getattr(error, "loc", None)
+    place = "" if loc is None else f"{loc.filename}:{loc.line}: "
+    lines = (line for line in str(error).splitlines() if line and not line.startswith("Failed in nopython"))
+    return place + shorten(next(lines, type(error).__name__), 300)
+
+
+UNCHANGED = leave, update_signature(_ANY, _ANY)
+"""In place of `compiled_update` with `estimator=None`."""
 
 
 @compiled

@@ -152,7 +152,7 @@ def _start(fixed, starts, values, begun, infos):
 
 @cache
 def _compiled_batch(
-    task: Any, update: Any, force_torque: np.dtype, cells: int
+    task: Any, update: tuple[Any, Any], force_torque: np.dtype, cells: int
 ) -> tuple[tuple[Any, ...], Any, Callable[..., Any], Callable[..., Any]]:
     """Pointers to the stages and `_move`, the type of what is fixed, and programs of the other two."""
     stages = compiled_stages(task, update, force_torque, cells)

@@ -10,11 +10,10 @@ from typing import Any
 import numpy as np
 
 from estimator.batch import BatchEstimator
-from estimator.registry import specification
 from slipgym.config import Config, Randomization, TaskConfig
 from slipgym.envs.actions import COMMANDS
 from slipgym.envs.control_step import BatchState
-from slipgym.envs.estimates import chosen_estimator, leave, make_estimators
+from slipgym.envs.estimates import UNCHANGED, chosen_estimator, compiled_update, make_estimators
 from slipgym.envs.infos import InfoBuffer
 from slipgym.envs.observation import DEVIATION_COLUMNS, FRICTION_COLUMNS, ObservationBuffers
 from slipgym.envs.randomizer import Randomizer
@@ -98,7 +97,7 @@ class Simulation(ABC):
         """Find the compiled programs for the kinds of arrays that the plant has."""
         plant = self.plant
         cells = 0 if plant.cells is None else plant.cells.ndim
-        update = specification(self._estimators.name).update_batch if self.estimating else leave
+        update = compiled_update(self._estimators) if self.estimating else UNCHANGED
         self._kinds = self.task, update, plant.force_torque.dtype, cells
         self.stages = compiled_stages(*self._kinds)
 

@@ -92,7 +92,7 @@ estimator, those of `control_step`, `nan_guard.note`, `equip_rows` and `open_epi
 class Stages:
     """The stages that both engines have in common, compiled for a task, an estimator, sensors and contacts.
 
-    `update` is the estimator's compiled `update_batch`, `force_torque` the dtype of the sensors; `cells` has
+    `update` is from `slipgym.envs.estimates.compiled_update`, `force_torque` the sensors' dtype; `cells` has
     the dimensions of `slipgym.world.plant.Plant.cells`, 0 for None.
 
     Attributes:
@@ -102,7 +102,7 @@ class Stages:
         look_at: `slipgym.envs.control_step.look_at` without its first argument.
     """
 
-    def __init__(self, task: Any, update: Any, force_torque: np.dtype, cells: int) -> None:
+    def __init__(self, task: Any, update: tuple[Any, Any], force_torque: np.dtype, cells: int) -> None:
         wrist, judge, learn = Known(SCRIPT_WRIST), Known(EVALUATE_STEP), Known(UPDATE)
         sensors, flags, rows = array(force_torque, 2), array(types.boolean, 2), (WHOLE, WHOLE)
         arguments = array(START), VALUES_TYPE, array(HARDWARE), F3, STATE, cells_type(cells), sensors
@@ -130,7 +130,7 @@ class Stages:
             self.linked = Linked(
                 Pointer(task.script_wrist, SCRIPT_WRIST),
                 Pointer(task.evaluate_step, EVALUATE_STEP),
-                Pointer(update, update.nopython_signatures[0]),
+                Pointer(*update),
                 **{name: program.pointer for name, program in programs.items()},
             )
             known = {name: program.known for name, program in programs.items()}
@@ -141,6 +141,6 @@ class Stages:
 
 
 @cache
-def compiled_stages(task: Any, update: Any, force_torque: np.dtype, cells: int) -> Stages:
+def compiled_stages(task: Any, update: tuple[Any, Any], force_torque: np.dtype, cells: int) -> Stages:
     """`Stages`, the same for the same arguments."""
     return Stages(task, update, force_torque, cells)
