@@ -7,6 +7,7 @@ import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 from policies.evaluation.experiment import Experiment, PolicyChoice, common_frame_skip
@@ -162,6 +163,8 @@ class Condition:
     episodes: int
     frame_skip: int = 1
     """Control steps per action, the same for all policies of a task but the recurrent ones of slipgym."""
+    force: float | None = None
+    """Of a constant grip [N]."""
 
     @property
     def keys(self) -> dict[str, Any]:
@@ -195,6 +198,8 @@ class Condition:
         return experiment_of(study, self.world.contact, values)
 
     def _policy(self) -> PolicyChoice:
+        if self.force is not None:
+            return PolicyChoice(name=self.policy, parameters={"force": self.force}, label=self.kind)
         if self.kind in _WITHOUT_FRICTION and self.source == "none":
             parameters = {"controller": self.policy}
             return PolicyChoice(name=_WITHOUT_FRICTION[self.kind], parameters=parameters, label=self.kind)
@@ -208,8 +213,15 @@ def experiment_of(study: Study, contact: str, values: Mapping[str, Any]) -> Expe
     return validate({**values, **same}, Experiment, values["name"])
 
 
-def conditions(study: Study, learned: Shelf) -> list[Condition]:
+def conditions(
+    study: Study, learned: Shelf, forces: Mapping[str, float] = MappingProxyType({})
+) -> list[Condition]:
     """Every condition of a study, in the order of the tables; policies that are not there are left out.
+
+    Args:
+        study: The study.
+        learned: From `policies_of`.
+        forces: Constant grips by task [N]; they play in the first world with its first preset.
 
     Raises:
         ValueError: Learned policies of a task act at different rates: they cannot be compared.
@@ -230,7 +242,17 @@ def conditions(study: Study, learned: Shelf) -> list[Condition]:
         )
         for task in study.tasks
     }
-    return [
+    world, estimator = study.worlds[0], study.estimators[0]
+    first = (world.presets or study.presets)[0]
+    constant = [
+        Condition(
+            *(world, task, first, UNCHANGED, "constant", "none", estimator, "constant_force"),
+            *(block, study.episodes, skips[task], force),
+        )
+        for task, force in forces.items()
+        for block in range(study.blocks)
+    ]
+    return constant + [
         Condition(world, task, preset, change, kind, source, estimator, policy, block, episodes, skip)
         for world, task, preset, change, sources, estimators, episodes in _places(study)
         for kind, source in itertools.product(study.kinds, sources)

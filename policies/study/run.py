@@ -6,25 +6,23 @@ import json
 import os
 import sys
 from pathlib import Path
+from typing import Any
 
-import pandas as pd
 from tqdm import tqdm
 
 from policies.evaluation.plan import plan
-from policies.evaluation.play import play_episodes
-from policies.evaluation.statistics import mean_interval, share, spread
-from policies.policy_leaderboard.entries import MODES, constants, strongest
+from policies.policy_leaderboard.entries import constants, strongest
 from policies.study import tables
 from policies.study.conditions import conditions, experiment_of, missing, policies_of
-from policies.study.config import Study
+from policies.study.config import BLOCKS_MAX, Study
 from policies.study.store import Store, episodes, mark
 from policies.versions import write_origin
 from slipgym import atomic_io
 
 CANDIDATES = 24
 """Constant forces that are tried, spaced geometrically over the gripper's range."""
-_SELECTION_SEED = 1000
-"""Added to the seed of a study: a force is chosen on other episodes than those it is evaluated on."""
+_SELECTION_SEED = 10**9
+"""Beyond the seeds of all blocks: a force is chosen on other episodes than those it is evaluated on."""
 
 
 def run_study(
@@ -51,19 +49,21 @@ def run_study(
     folder = Path(output).expanduser().resolve() / f"study__{study.name}__{study.seed}"
     atomic_io.check_folder(folder.parent)
     learned = policies_of(study)
-    chosen = conditions(study, learned)
     absent = missing(study, learned)
-    if not chosen:
+    if not conditions(study, learned):
         raise ValueError(f"{study.name}: no condition to run; {'; '.join(absent)}")
     for words in absent:
         print(f"left out: {words}", file=sys.stderr)
+    forces = constant_grips(study, folder / "constant_grip", progress=progress)
+    chosen = conditions(study, learned, forces)
     done = episodes(study, chosen, Store(folder / "conditions", study), jobs, progress)
+    outcomes = tables.outcomes(done)
     made = {
-        "outcomes": tables.outcomes(done),
+        "outcomes": outcomes,
         "shares": tables.shares(done, study.estimators[0]),
         "benefits": tables.benefits(done),
         "transfer": tables.transfer(done, study),
-        "constant_grip": constant_grips(study, folder / "constant_grip", progress=progress),
+        "constant_grip": tables.constant_grip(outcomes, forces),
     }
     write_origin(folder, study=study.model_dump(mode="json"))
     atomic_io.write(folder / "episodes.parquet", done.to_parquet(index=False))
@@ -74,23 +74,19 @@ def run_study(
 
 def constant_grips(
     study: Study, folder: Path, candidates: int = CANDIDATES, progress: bool = True
-) -> pd.DataFrame:
-    """Success, drops and return of the best constant grip of each task of a study.
+) -> dict[str, float]:
+    """The best constant grip of each task of a study [N].
 
-    The episodes are those of the first preset, on the planar engine, as many as a condition has. The force is
-    tuned to their distribution, which nobody could do for a single new object. The folder keeps finished
-    tasks, which are not run again.
-
-    Returns:
-        A row for each task: `task`, `force_N` [N], `n`, and with intervals `success`, `dropped`, `return`.
+    It is chosen on other episodes than those of the study, of the first preset, on the planar engine. So it
+    is tuned to their distribution, which nobody could do for a single new object. The folder keeps it.
     """
-    rows = []
+    found = {}
     contacts = [world.contact for world in study.worlds if world.engine == "planar"]
     for task in tqdm(study.tasks, desc="constant grips", unit="task", disable=not progress):
         values = {
             "name": f"constant_{task.rpartition(':')[2]}",
             "task": task,
-            "seed": study.seed,
+            "seed": BLOCKS_MAX * study.seed + _SELECTION_SEED,
             "trials": study.blocks * study.episodes,
             "policies": [{"name": "constant_force"}],
             "friction": [{"source": "none"}],
@@ -100,21 +96,10 @@ def constant_grips(
         experiment = experiment_of(study, contacts[0] if contacts else "ellipsoid", values)
         path = folder / f"{experiment.name}__{mark(experiment, str(candidates))}.json"
         if not path.exists():
-            chosen = experiment.model_copy(update={"seed": study.seed + _SELECTION_SEED})
-            seeds, selection = ([trial.seed for trial in plan(each)] for each in (experiment, chosen))
-            gripper, arguments = experiment.environment_config().gripper, experiment.arguments
-            members = constants(gripper, candidates, experiment.config)
-            policy = strongest(task, members, arguments, selection).policy
-            found = play_episodes(task, policy, {**arguments, **MODES}, seeds)
-            shares = {"success": share(found.success), "dropped": share(found.dropped)}
-            figures = spread({**shares, "return": mean_interval(found.reward)})
-            row = {
-                "task": task,
-                "force_N": policy.force,  # type: ignore[attr-defined]
-                "n": len(seeds),
-                **figures,
-            }
+            members = constants(experiment.environment_config().gripper, candidates, experiment.config)
+            seeds = [trial.seed for trial in plan(experiment)]
+            policy: Any = strongest(task, members, experiment.arguments, seeds).policy
             with atomic_io.new_file(path) as partial:
-                partial.write_text(json.dumps(row), encoding="utf-8")
-        rows.append(json.loads(path.read_text(encoding="utf-8")))
-    return pd.DataFrame(rows)
+                partial.write_text(json.dumps({"force_N": policy.force}), encoding="utf-8")
+        found[task] = json.loads(path.read_text(encoding="utf-8"))["force_N"]
+    return found

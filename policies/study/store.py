@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import hashlib
+import importlib
 import json
 from collections.abc import Iterable, Sequence
+from contextlib import suppress
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -13,6 +15,7 @@ import pandas as pd
 from tqdm import tqdm
 
 import policies
+from estimator.reference import is_reference
 from policies import parallel
 from policies.evaluation.experiment import Experiment
 from policies.evaluation.plan import pieces, plan
@@ -21,11 +24,14 @@ from policies.study.conditions import Condition
 from policies.study.config import Study
 from slipgym.atomic_io import new_folder
 from slipgym.config import files
+from slipgym.config.level import load_level
+from slipgym.config.load import load_randomization
+from slipgym.tasks import find
 
 _TOP = Path(policies.__file__).parents[1]
 _SOURCES = (
     *("slipgym/**/*.py", "estimator/**/*.py", "policies/*.py", "policies/controllers/*.py"),
-    *("policies/evaluation/*.py", "policies/learned/*.py"),
+    *("policies/evaluation/*.py", "policies/learned/*.py", "policies/policy_leaderboard/*.py"),
 )
 _CONFIGS = ("*.yaml", "sensors/*.yaml", "randomization/*.yaml", "levels/*.yaml")
 
@@ -41,9 +47,21 @@ class Store:
         return self._path / f"{condition.name}__{fingerprint(condition, self._study)}" / "episodes.parquet"
 
     def write(self, condition: Condition, rows: pd.DataFrame) -> None:
-        """Keeps a condition, whole or not at all."""
-        with new_folder(self.table(condition).parent) as folder:
+        """Keeps a condition, whole or not at all; another process may have kept the same before."""
+        with suppress(FileExistsError), new_folder(self.table(condition).parent) as folder:
             rows.to_parquet(folder / self.table(condition).name, index=False)
+
+    def read(self, condition: Condition) -> pd.DataFrame:
+        """The episodes of a finished condition.
+
+        Raises:
+            ValueError: The file is damaged.
+        """
+        path = self.table(condition)
+        try:
+            return pd.read_parquet(path)
+        except (OSError, ValueError) as error:  # ValueError: pyarrow's
+            raise ValueError(f"{path}: {error}; delete its folder, and the condition is run again") from error
 
 
 def fingerprint(condition: Condition, study: Study) -> str:
@@ -53,9 +71,23 @@ def fingerprint(condition: Condition, study: Study) -> str:
 
 
 def mark(experiment: Experiment, more: str) -> str:
-    """Sixteen digits that change with an experiment, with something more and with the sources that run it."""
-    asked = json.dumps(experiment.model_dump(mode="json"), sort_keys=True)
-    return hashlib.sha256("\n".join([asked, more, sources()]).encode()).hexdigest()[:16]
+    """Sixteen digits that change with an experiment, with something more and with the sources that run it.
+
+    Of a level, a randomization and a module that it names, the content counts; not what that module imports.
+    """
+    level = load_level(experiment.level, find(experiment.task).key).level
+    drawn = load_randomization(experiment.randomization)
+    asked = json.dumps([each.model_dump(mode="json") for each in (experiment, level, drawn)], sort_keys=True)
+    return hashlib.sha256("\n".join([asked, more, sources(), _modules(experiment)]).encode()).hexdigest()[:16]
+
+
+def _modules(experiment: Experiment) -> str:
+    """A digest of the modules of the experiment's references, tasks of one's own for example."""
+    estimators = [choice.estimator["name"] for choice in experiment.friction if choice.estimator]
+    names = [experiment.task, *(policy.name for policy in experiment.policies), *estimators]
+    modules = {name.partition(":")[0] for name in names if is_reference(name) and not Path(name).is_dir()}
+    files = (importlib.import_module(module).__file__ for module in modules)
+    return _digest(Path(file) for file in files if file)
 
 
 @cache
@@ -107,4 +139,4 @@ def episodes(
                     rows.append({**condition.keys, "episode": len(rows), **kept})
                     bar.update()
             store.write(condition, pd.DataFrame(rows))
-    return pd.concat([pd.read_parquet(store.table(each)) for each in conditions], ignore_index=True)
+    return pd.concat(map(store.read, conditions), ignore_index=True)

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
 from policies.evaluation.frames import distinct, groups, values, where
-from policies.evaluation.gain import Entry, ranked
+from policies.evaluation.gain import WITHOUT, Entry, ranked
 from policies.evaluation.statistics import Bootstrap, Drawn, Interval, over_seeds, share, spread
 from policies.study.config import Study
 
@@ -21,6 +21,11 @@ SHARES = [
     "verdict",
 ]
 """Columns of the table of shares."""
+TRANSFER = [
+    *("contact", "task", "preset", "kind", "n"),
+    *(f"{name}{end}" for name in ("core", "bullet", "difference") for end in ("", "_low", "_high")),
+]
+"""Columns of the table of transfer."""
 ALL = "all tasks"
 TRAINED = "learned", "imitation"
 """Kinds of policies that have training seeds."""
@@ -52,6 +57,13 @@ def outcomes(episodes: pd.DataFrame) -> pd.DataFrame:
         counts = {"n": len(group), "blocks": " ".join(f"{each:.3f}" for each in by_block)}
         rows.append(dict(zip(condition, keys, strict=True)) | counts | spread(figures))
     return pd.DataFrame(rows)
+
+
+def constant_grip(outcomes: pd.DataFrame, forces: Mapping[str, float]) -> pd.DataFrame:
+    """Of the outcomes, those of the best constant grip of each task, with its force [N]."""
+    figures = [f"{name}{end}" for name in ("success", "dropped", "return") for end in ("", "_low", "_high")]
+    found = where(outcomes, kind="constant")
+    return found.assign(force_N=[forces[task] for task in found["task"]])[["task", "force_N", "n", *figures]]
 
 
 def shares(episodes: pd.DataFrame, estimator: str) -> pd.DataFrame:
@@ -96,7 +108,7 @@ def transfer(episodes: pd.DataFrame, study: Study) -> pd.DataFrame:
                 figures = {"core": share(core).percent, "bullet": share(bench).percent}
                 figures |= {"difference": difference.interval}
                 rows.append({"contact": planar.contact, **row, "n": len(group), **spread(figures)})
-    return pd.DataFrame(rows)
+    return pd.DataFrame(rows, columns=pd.Index(TRANSFER))
 
 
 def _share(drawn: dict[str, Drawn]) -> dict[str, Any]:
@@ -149,8 +161,8 @@ COLUMNS = [
 def benefits(episodes: pd.DataFrame) -> pd.DataFrame:
     """Success of each policy with friction information less that of the strongest one without, in pairs.
 
-    The opponent is the strongest kind of policy without friction information in a place, the oracle the
-    strongest policy with the true friction. The share is (policy - opponent) / (oracle - opponent).
+    The opponent is the strongest policy with no or with nominal friction in a place, the oracle the strongest
+    with the true friction. The share is (policy - opponent) / (oracle - opponent).
 
     Returns:
         Columns `COLUMNS`: a row for each policy with friction information. `verdict` is "better", "worse" or
@@ -162,16 +174,22 @@ def benefits(episodes: pd.DataFrame) -> pd.DataFrame:
         group = group.sort_values(["block", "episode"])
         parts = dict(groups(group, _POLICY))
         entries = [
-            Entry(kind, source, values(part, "success"), values(part, "return"), friction)
+            Entry(
+                f"{kind} nominal" if source == "nominal" else kind,
+                source,
+                values(part, "success"),
+                values(part, "return"),
+                friction,
+            )
             for (kind, source, friction), part in parts.items()
         ]
-        opponents, oracles = ranked(entries, ["none"]), ranked(entries, ["true"])
+        opponents, oracles = ranked(entries, WITHOUT), ranked(entries, ["true"])
         if not opponents:
             continue
         bootstrap = Bootstrap(strata(next(iter(parts.values()))))
         without = bootstrap(opponents[-1].success)
         whole = bootstrap(oracles[-1].success) - without if oracles else None
-        for entry in (entry for entry in entries if entry.source != "none"):
+        for entry in (entry for entry in entries if entry.source not in WITHOUT):
             gain, share = bootstrap(entry.success) - without, NOTHING
             if whole is not None and whole.interval.low > 0.0:
                 found = gain.share_of(whole).interval

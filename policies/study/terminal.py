@@ -20,6 +20,7 @@ TITLES = {
     "recurrent": "recurrent network",
     "learned": "learned policy",
     "imitation": "imitated policy",
+    "constant": "best constant grip",
 }
 """Kind of a policy -> what a sentence calls it."""
 _WHO = {"task": "task", "preset": "preset", "kind": "policy"}
@@ -54,7 +55,7 @@ def words(study: Study, folder: Path) -> str:
     parts += training_seeds(outcomes)
     constant = pd.read_csv(folder / "constant_grip.csv")
     constant["force"] = constant["force_N"].map("{:.2f}".format)
-    parts.append("The best constant grip, without any sensor, planar engine:")
+    parts.append("The best constant grip, without any sensor:")
     parts.append(_table(constant, {"task": "task", "force": "force [N]"} | _OUTCOMES))
     return "\n\n".join([*parts, f"Look at:\n  {folder / 'outcomes.csv'}"])
 
@@ -69,9 +70,10 @@ def claims(benefits: pd.DataFrame, outcomes: pd.DataFrame) -> list[str]:
         row = max(records(group), key=lambda each: each["difference"])
         played = where(outcomes, task=task, preset=preset)
         count = {source: _solved(where(played, source=source)) for source in ("estimated", "true")}
-        opponent = _solved(where(played, source="none", kind=row["opponent"]))
+        kind, _, nominal = row["opponent"].partition(" ")
+        opponent = _solved(where(played, source=nominal or "none", kind=kind))
         points = Interval(*(row[f"difference{end}"] for end in ("", "_low", "_high"))).percent
-        name = TITLES[row["opponent"]]
+        name = TITLES[kind] + ", nominal friction" * bool(nominal)
         words = sentence(row["n"], count["estimated"] or 0, (name, opponent or 0), count["true"], points)
         found.append(f"{task}, {preset}: {words}" if preset != "none" else f"{task}: {words}")
     return found

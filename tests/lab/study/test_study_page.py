@@ -122,7 +122,7 @@ def test_the_page_says_what_is_known(page):
     assert "The benefit depends on that baseline" in text
     assert "Hold: &lt;nothing&gt; &amp; all" in text
     assert re.search(
-        r"Hold train (classic|learned) classic estimated disc 30 90\.0 80\.0 to 100\.0 90 ", text
+        r"Hold train (classic|learned) nominal classic estimated disc 30 40\.0 23\.3 to 56\.7 – ", text
     )
     assert "slipgym study-report small" in text
     assert text.count("✓ reached") == 10
@@ -141,7 +141,7 @@ def test_kinds_with_a_single_friction_source_are_compared_in_the_table_alone(sma
     page = render(study, episodes, made, [], [], "")
     assert "The controllers: episodes solved" in page
     assert "with a memory of slips" not in page
-    assert page.count("<td>memory</td><td>classic</td>") == 3  # the opponent of all sources but none
+    assert page.count("<td>memory</td><td>classic</td>") == 2  # the opponent of estimated and true
 
 
 def test_the_report_of_a_finished_study(small, tmp_path, monkeypatch, invoke):

@@ -45,7 +45,7 @@ def test_the_folder_holds_everything(run, small):
     assert {path.name for path in run.iterdir()} == FILES
     assert load_study(run / "study.yaml") == small()
     episodes = pd.read_parquet(run / "episodes.parquet")
-    assert len(episodes) == 2 * (4 + 1)
+    assert len(episodes) == 2 * (4 + 1 + 1)
     assert not episodes.isna().any(axis=None)
     assert set(episodes["source"]) == {"none", "nominal", "estimated", "true"}
     constant = pd.read_csv(run / "constant_grip.csv")
@@ -94,7 +94,7 @@ def test_a_study_that_was_broken_off_goes_on(run, small, output, tmp_path, monke
     kept = list((tmp_path / run.name / "conditions").iterdir())
     assert len(kept) == 3
     again = run_study(study, tmp_path, 1, progress=False)
-    assert count[0] == 4 + 7
+    assert count[0] == 4 + 9
     pd.testing.assert_frame_equal(*(pd.read_parquet(each / "episodes.parquet") for each in (again, run)))
 
 
@@ -109,6 +109,45 @@ def test_a_cell_is_known_by_all_that_decides_its_result(small, monkeypatch):
     assert fingerprint(one, study) not in marks
 
 
+@pytest.mark.parametrize("what", ["preset", "level", "estimator"])
+def test_a_cell_is_known_by_the_content_of_files(small, tmp_path, monkeypatch, what):
+    file = tmp_path / ("fading.py" if what == "estimator" else "mine.yaml")
+    first, second = {
+        "preset": ("mu_c: {uniform: [0.5, 0.6]}\n", "mu_c: {uniform: [0.2, 0.25]}\n"),
+        "level": ("randomization: {mu_c: {uniform: [0.5, 0.6]}}\n", "settings: {tolerance: 0.004}\n"),
+        "estimator": ("from estimator.rls import *\n", "from estimator.rls import *\nGAIN = 2\n"),
+    }[what]
+    if what == "estimator":
+        own = "from dataclasses import replace\nOWN = replace(SPECIFICATION, name='fading:OWN')\n"
+        first, second = first + own, second + own
+    monkeypatch.syspath_prepend(tmp_path)
+    file.write_text(first, encoding="utf-8")
+    given = {"presets": [str(file)], "level": str(file), "estimators": ["fading:OWN"]}
+    study = small(**{key: value for key, value in given.items() if key.startswith(what)})
+    cells = conditions(study, {})
+    before = [fingerprint(cell, study) for cell in cells]
+    assert [fingerprint(cell, study) for cell in cells] == before
+    file.write_text(second, encoding="utf-8")
+    assert all(fingerprint(cell, study) != mark for cell, mark in zip(cells, before, strict=True))
+
+
+def test_what_another_process_has_kept_is_taken(small, tmp_path):
+    study = small()
+    store, (condition, *_) = Store(tmp_path, study), conditions(study, {})
+    for value in (1, 2):
+        store.write(condition, pd.DataFrame({"seed": [value]}))
+    assert list(store.read(condition)["seed"]) == [1]
+
+
+def test_a_damaged_cell_is_named_with_the_way_on(small, tmp_path):
+    study = small()
+    store, (condition, *_) = Store(tmp_path, study), conditions(study, {})
+    store.write(condition, pd.DataFrame({"seed": [1]}))
+    store.table(condition).write_bytes(b"PAR1")
+    with pytest.raises(ValueError, match=r"episodes\.parquet: .*delete its folder"):
+        store.read(condition)
+
+
 def test_a_broken_cell_is_no_cell(small, tmp_path):
     study = small()
     store, (condition, *_) = Store(tmp_path, study), conditions(study, {})
@@ -120,7 +159,7 @@ def test_a_broken_cell_is_no_cell(small, tmp_path):
 
 def test_what_the_terminal_says(run, small):
     said = words(small(), run)
-    assert "LinearSlip  train   classic  estimated disc" in said
+    assert "LinearSlip  train   classic   estimated disc" in said
     assert "not significant" in said
     assert str(run / "outcomes.csv") in said
 
@@ -133,7 +172,7 @@ def test_a_study_without_all_sources_has_no_shares(run, small, output):
     )
     folder = run_study(study, output, 1, progress=False)
     assert len(pd.read_csv(folder / "shares.csv")) == 0
-    assert "LinearSlip  train   classic  true" in words(study, folder)
+    assert "LinearSlip  train   classic   true" in words(study, folder)
 
 
 def test_nothing_to_run_is_an_error(small, tmp_path):

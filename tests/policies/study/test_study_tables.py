@@ -84,6 +84,16 @@ def test_the_sentence_names_the_strongest_policy_without_friction(invented):
     )
 
 
+def test_nominal_friction_and_a_constant_grip_are_without_friction(invented):
+    grip = invented({"none": 7}, kind="constant")
+    for table, name, solved in (
+        (invented({**CLEAR, "nominal": 5}), "controller, nominal friction", 15),
+        (pd.concat([invented(CLEAR), grip], ignore_index=True), "best constant grip", 21),
+    ):
+        (said,) = claims(benefits(table), outcomes(table))
+        assert f", {solved} by the strongest policy without friction ({name})" in said
+
+
 def test_the_benefit_is_against_the_strongest_policy_without_friction(invented):
     learned = invented({"none": 6, "estimated": 9}, kind="imitation")
     table = benefits(pd.concat([invented(CLEAR), learned], ignore_index=True))
@@ -97,7 +107,8 @@ def test_the_benefit_is_against_the_strongest_policy_without_friction(invented):
     assert (row["difference"], row["share"], row["verdict"]) == (pytest.approx(0.4), 1.0, "better")
     few = benefits(invented({"none": 2, "estimated": 3, "true": 10}))
     assert one(few, source="estimated")["share"] == pytest.approx(1 / 8)
-    assert one(benefits(invented({"none": 5, "nominal": 5})), source="nominal")["verdict"] == "not resolvable"
+    nominal = one(benefits(invented({"none": 4, "nominal": 5, "estimated": 5})))
+    assert (nominal["opponent"], nominal["verdict"]) == ("classic nominal", "not resolvable")
     assert len(benefits(invented({"true": 10}))) == 0
 
 
