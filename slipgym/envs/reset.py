@@ -117,6 +117,11 @@ class EpisodeSampler:
             start_task(settings, options, rng, self._episode[i])
             rng.standard_normal(out=biases[k])
             keys[k], rests[k] = draw_sensors(2, rng)
+        if (shortest := self._episode["steps"][rows].min()) < 1:
+            raise ValueError(
+                f"{self._task.id}: start leaves episode.steps = {shortest}: expected at least 1, the length "
+                "of the episode in control steps of episode.step_time"
+            )
         happened = self._randomizer.schedule(shares, scale, rows, self._episode)
         self._note(rows, starts)
         self.drawn.keep(rows, chosen.reported, starts, values, happened)

@@ -13,7 +13,7 @@ from gymnasium.envs.registration import load_env_creator
 
 from estimator._numba.uncompiled import uncompiled
 from slipgym.registration import ENVIRONMENTS
-from slipgym.tasks.compile import RECORDS, THREE, Function, functions, inlined, no_field
+from slipgym.tasks.compile import RECORDS, THREE, TRUTH, Function, functions, inlined, no_field
 
 if TYPE_CHECKING:
     from slipgym.tasks.task import Task
@@ -36,11 +36,12 @@ def check(task: Task[Any], steps: int = 20) -> list[str]:
 
     Returns:
         A text of a few lines for each function with a fault: an exception such as that of a misspelled
-        field, a wrong kind of return value, or a number that is not finite, with function, file and line.
+        field, a wrong kind of return value, a number that is not finite, or a record that it may not write,
+        with function, file and line.
         Empty if there is none.
 
     Raises:
-        ValueError: The settings are not valid.
+        ValueError: The settings are not valid, or `start` leaves `steps` below 1.
     """
 
     def start(*given: Any) -> None:  # of this module: its programs are the same for all tasks
@@ -83,11 +84,20 @@ def _solved(episode, world):
 def _fault(function: Function, arguments: list[Any]) -> str:
     """What is wrong with a function's call; empty: nothing."""
     plain, before = uncompiled(inlined(function.call)), [each.copy() for each in arguments]
+    may_write = function.takes[:1] if function.name == "track" else ()
     try:
         with np.errstate(all="ignore"):
             value = plain(*arguments)
     except Exception as error:
         return "" if "'numpy.void'" in str(error) else _raised(function, error)
+    for name, now, then in zip(function.takes, arguments, before, strict=False):
+        changed = [field for field in now.dtype.names if now[field].tobytes() != then[field].tobytes()]
+        if changed and name not in may_write:
+            for field in changed:
+                now[field] = then[field]
+            return function.fault(f"writes {name}.{changed[0]}; only track may write, and only episode")
+    if function.returns == TRUTH and _is_number(value) and value not in (0, 1):
+        return function.fault(f"returns {value!r}; must return {TRUTH}")
     numbers = value if function.returns == THREE and isinstance(value, tuple) else (value,)
     if function.returns:
         if len(numbers) != (3 if function.returns == THREE else 1) or not all(map(_is_number, numbers)):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 import sys
 from collections.abc import Callable
@@ -86,7 +87,8 @@ class Task(Generic[SettingsT]):
     `world` a WORLD record.
 
     Raises:
-        ValueError: The id is malformed, or the task has neither `success` nor `violated`.
+        ValueError: The id is malformed, the task has neither `success` nor `violated`, or the ends of a
+            column or the scale of a term are no numbers in order.
     """
 
     id: str
@@ -129,6 +131,14 @@ class Task(Generic[SettingsT]):
             raise ValueError(f"id = {self.id!r}: {error}") from error
         if self.success is None and self.violated is None:
             raise ValueError(f"{self.id} needs `success`, `violated` or both")
+        for column in self.columns:
+            if not column.low < column.high:
+                raise ValueError(
+                    f"column {column.name}: low = {column.low} must be below high = {column.high}"
+                )
+        for term in self.terms:
+            if not math.isfinite(term.scale):
+                raise ValueError(f"term {term.name}: scale = {term.scale}: expected a finite number")
         if not self.key:
             object.__setattr__(self, "key", re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", name).lower())
 

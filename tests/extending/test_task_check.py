@@ -69,6 +69,23 @@ def nothing(episode, world):
     """No answer."""
 
 
+def moves(episode, world, fingers):
+    """Only the engine may do so."""
+    world.slip[1] = 0.0
+
+
+@term(scale=1.0)
+def shifts(episode, world, fingers):
+    """Only track may do so."""
+    episode.goal = 0.02
+    return 0.0
+
+
+def partly(episode, world):
+    """A share in place of a truth value."""
+    return 0.3
+
+
 def begin(settings, options, rng, episode):
     """A field that does not exist."""
     episode["gaol"] = 1.0
@@ -108,6 +125,9 @@ def test_nothing_is_found_in_that_of_the_page(own_task):
             {"track": spread},
             r"track, .*\n.*world\.mass.*\nwrites a number that is not finite .*invalid value",
         ),
+        ({"track": moves}, r"track, .*\n.*def moves.*\nwrites world\.slip; only track may write"),
+        ({"terms": (shifts,)}, r"term shifts.*\n.*def shifts.*\nwrites episode\.goal; only track may"),
+        ({"success": partly}, r"success, .*\n.*def partly.*\nreturns 0\.3; must return true or false"),
         ({"success": nothing}, r"success, .*\n.*def nothing.*\nreturns None; must return true or false"),
         ({"start": begin}, r"start, .*\n.*\[.gaol.\] = 1\.0\nunknown field .*did you mean 'goal'"),
         ({"wrist_velocity": nothing}, r"returns None; must return three numbers \(x, z, pitch\)"),
@@ -147,3 +167,29 @@ def test_what_does_not_compile_is_explained(own_task, changes, said):
     assert len(str(raised.value).splitlines()) == 3
     assert raised.value.__cause__ is None
     assert raised.value.__suppress_context__
+
+
+@pytest.mark.parametrize("steps", [0, -3])
+def test_a_start_without_a_length_is_refused(own_task, steps):
+    def start(settings, options, rng, episode):
+        own_task.start(settings, options, rng, episode)
+        episode["steps"] = steps
+
+    task = dataclasses.replace(own_task.TASK, start=start)
+    with pytest.raises(ValueError, match=rf"SlideToLine-v0: start leaves episode\.steps = {steps}: expected"):
+        check(task)
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        (
+            {"columns": (Column("line", 1.0, 0.0, "m", "", read="0.0"),)},
+            r"column line: low = 1\.0 must be below",
+        ),
+        ({"terms": (term(scale=float("nan"))(misspelled.value),)}, "term misspelled: scale = nan: expected"),
+    ],
+)
+def test_numbers_of_the_declaration_are_checked(own_task, changes, said):
+    with pytest.raises(ValueError, match=said):
+        dataclasses.replace(own_task.TASK, **changes)
