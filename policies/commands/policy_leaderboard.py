@@ -54,6 +54,7 @@ def main(
     """Print a table of policies by success, and write it with a picture."""
     import pandas as pd
 
+    import policies
     from policies.evaluation.frames import markdown
     from policies.evaluation.one_policy import environment_of
     from policies.leaderboard.imperfections import without as lacking
@@ -74,15 +75,22 @@ def main(
         if worlds and engine != "planar":
             raise ValueError(f"--engine {engine}: --worlds plays on both engines")
         engine = resolved(one_of("engine", engine, ENGINES))
-        for task in tasks or TASKS:
-            find(task)  # one of the user's own is registered, before a policy asks for it
+        chosen = list({find(task).name: task for task in tasks or TASKS}.values())
+        for task in chosen:
+            if find(task).key not in policies.names():
+                raise ValueError(f"{task}: no controller to compare with; slipgym evaluate takes this task")
+        if friction_source is not None and not policy:
+            raise ValueError(f"--friction-source {friction_source}: of policies entered with --policy")
+        if without and sensors != "lab":
+            raise ValueError(f"--without {without[0]}: of the sensors 'lab', and these are {sensors!r}")
         if friction_source is not None:
             one_of("friction source", friction_source, FRICTION_SOURCES)
         mine = entries.entered(policy or [], friction_source)
-        for task in tasks or TASKS:
+        for task in chosen:
             for each in mine:  # one for another task, whose observations may be as long, is refused
                 environment_of(each.name, each.policy, task)
-        cells = [(task, name) for task in tasks or TASKS for name in level or level_names(find(task).key)]
+        levels = list(dict.fromkeys(level or []))
+        cells = [(task, name) for task in chosen for name in levels or level_names(find(task).key)]
         for task, name in cells:
             others = entries.opponents(task, {**same, "level": name}, max(episodes // 2, 1), imitation)
             members = [*mine, *others]

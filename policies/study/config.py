@@ -120,7 +120,7 @@ def _distinct(what: str, names: Any) -> None:
 def _among(what: str, names: Any, valid: Any) -> None:
     for name in names:
         if name not in valid:
-            raise ValueError(unknown(what, name, valid))
+            raise ValueError(unknown(f"{what} of this study", name, valid))
 
 
 _FOLDER = "studies"
@@ -148,6 +148,9 @@ def narrowed(study: Study, **changes: Any) -> Study:
         ValueError: A value is not allowed.
     """
     given = {key: value for key, value in changes.items() if value not in (None, "", (), [])}
+    for kind in ("learned", "imitation"):
+        if kind in given and kind not in given.get("kinds", study.kinds):
+            raise ValueError(f"{kind} = {given[kind]!r}: {study.name} has no policies of the kind {kind!r}")
     if "tasks" in given:
         given["tasks"] = [find(task).name for task in given["tasks"]]
         given["videos"] = [task for task in study.videos if task in given["tasks"]]

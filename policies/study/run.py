@@ -51,7 +51,7 @@ def run_study(
     learned = policies_of(study)
     absent = missing(study, learned)
     if not conditions(study, learned):
-        raise ValueError(f"{study.name}: no condition to run; {'; '.join(absent)}")
+        raise ValueError("; ".join([f"{study.name}: no condition to run", *absent]))
     for words in absent:
         print(f"left out: {words}", file=sys.stderr)
     forces = constant_grips(study, folder / "constant_grip", progress=progress)

@@ -133,7 +133,9 @@ class _Schema:
             text = f"a list{least}: each {self.allowed(self._followed(node['items']))}"
         else:
             bounds = " and ".join(f"{sign} {node[key]:g}" for key, sign in _BOUNDS.items() if key in node)
-            text = " ".join([_KINDS[node["type"]] if "type" in node else "any value", bounds]).strip()
+            pattern = f"that matches {node['pattern']}" if "pattern" in node else ""
+            kind = _KINDS[node["type"]] if "type" in node else "any value"
+            text = " ".join(filter(None, [kind, pattern, bounds]))
         return f"{text} ({node['description']})" if "description" in node else text
 
     def _followed(self, node: dict[str, Any]) -> dict[str, Any]:

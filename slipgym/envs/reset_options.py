@@ -57,6 +57,10 @@ class RowOptions:
             together = np.array(list(some))
             yield own[together[0]], together
 
+    def place(self, options: EpisodeOptions, row: int) -> str:
+        """What an error in options of a row begins with: where they were given, if for this row alone."""
+        return "" if options is self._common else f"options['rows'][{row}]: "
+
 
 @cache
 def _nothing(kind: type[EpisodeOptions]) -> EpisodeOptions:

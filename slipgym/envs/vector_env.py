@@ -226,7 +226,11 @@ class SlipVectorEnv(Conventions, gym.vector.VectorEnv[Any, np.ndarray, np.ndarra
         groups = [(self._options, rows)] if asked is None else asked.groups(rows)
         for options, some in groups if rows.size else ():
             generators = [self._generators[i] for i in some.tolist()]
-            self.simulation.reset_rows(some, generators, options, self._material)
+            try:
+                self.simulation.reset_rows(some, generators, options, self._material)
+            except ValueError as error:
+                where = "" if asked is None else asked.place(options, some[0])
+                raise ValueError(f"{where}{error}") from None
             self._observer.begin(some)
             self._pictures.begin(some)
             self._ready[some] = True

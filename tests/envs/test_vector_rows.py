@@ -156,3 +156,15 @@ def test_options_of_rows(env_id):
             assert step[1][i] == reward
             np.testing.assert_array_equal(step[-1]["true"][i], info["true"])
         one.close()
+
+
+@pytest.mark.parametrize(
+    "row", [{"material": "nope"}, {"mu_s": 0.3, "mu_c": 0.5}, {"cop_offset": [1.0, 1.0]}, {"nope": 1.0}]
+)
+def test_an_error_names_the_row(row):
+    envs = gym.make_vec("slipgym:slipgym/Hold-v0", num_envs=3)
+    with pytest.raises(ValueError, match=r"options\['rows'\]\[1\]: "):
+        envs.reset(seed=0, options={"rows": [None, row, None]})
+    with pytest.raises(ValueError, match="unknown material 'nope'") as common:
+        envs.reset(seed=0, options={"material": "nope", "rows": [None, {"mu_s": 0.7}, None]})
+    assert "rows" not in str(common.value)

@@ -224,3 +224,25 @@ def test_a_policys_file_says_its_friction_source():
     assert [each.arguments["friction_source"] for each in entered([place, place], None)] == ["true", "true"]
     (on_estimates,) = entered([place], "estimated")
     assert on_estimates.arguments["friction_source"] == "estimated"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["--friction-source", "true"], "--friction-source true: of policies entered with --policy"),
+        (["--without", "scale"], "--without scale: of the sensors 'lab', and these are 'realistic'"),
+    ],
+)
+def test_an_option_without_effect_is_refused(arguments, said, tmp_path):
+    done = CliRunner().invoke(app, ["hold", *arguments, "--output", str(tmp_path)], env={"COLUMNS": "200"})
+    assert done.exit_code == 2
+    assert said in done.stderr
+
+
+def test_what_is_asked_for_twice_plays_once(tmp_path, monkeypatch):
+    monkeypatch.setattr(entries, "opponents", lambda *_: [constant(20.0)])
+    arguments = ["hold", "Hold", "--level", "easy", "--level", "easy", "--episodes", "2"]
+    done = CliRunner().invoke(app, [*arguments, "--output", str(tmp_path)])
+    assert done.exit_code == 0, done.output
+    (table,) = tmp_path.glob("*/policies.csv")
+    assert len(pd.read_csv(table)) == 1

@@ -234,3 +234,9 @@ def test_a_controller_that_learns_nothing_acts_as_before_the_first_slip():
     np.testing.assert_array_equal(single, alone[0])
     # deviations belong to estimates, of which its environment shows none
     assert {**unaware.modes, "observation_mode": "deviations"} == policies.modes(controller)
+
+
+def test_a_folder_of_policies_that_do_not_act_is_refused(small):
+    with pytest.raises(ValueError, match="learned = 'nope': small has no policies of the kind 'learned'"):
+        narrowed(small(kinds=["classic"]), learned="nope")
+    assert narrowed(small(kinds=["classic"]), learned="nope", kinds=["learned"]).learned == "nope"
