@@ -63,7 +63,8 @@ def constant_grip(outcomes: pd.DataFrame, forces: Mapping[str, float]) -> pd.Dat
     """Of the outcomes, those of the best constant grip of each task, with its force [N]."""
     figures = [f"{name}{end}" for name in ("success", "dropped", "return") for end in ("", "_low", "_high")]
     found = where(outcomes, kind="constant")
-    return found.assign(force_N=[forces[task] for task in found["task"]])[["task", "force_N", "n", *figures]]
+    found = found.assign(force_N=[forces[task] for task in found["task"]])
+    return found.loc[:, ["task", "force_N", "n", *figures]]
 
 
 def shares(episodes: pd.DataFrame, estimator: str) -> pd.DataFrame:
