@@ -58,7 +58,7 @@ class RowOptions:
             yield own[together[0]], together
 
     def place(self, options: EpisodeOptions, row: int) -> str:
-        """What an error in options of a row begins with: where they were given, if for this row alone."""
+        """Returns what an error begins with: where the options were given, if for this row alone."""
         return "" if options is self._common else f"options['rows'][{row}]: "
 
 
