@@ -92,7 +92,7 @@ class PrivilegedPPO(Frozen):
         description="Columns that change sign in a mirror: samples count twice, as they are and mirrored [-]",
     )
     privileged: bool = Field(default=True, description="Whether the critic reads the privileged group [-]")
-    start: str | None = Field(default=None, description="Folder of a policy that the actor starts as")
+    start: str | None = Field(default=None, description="Policy that the actor starts as")
     critic_first: int = Field(
         default=0, ge=0, description="Updates at first that change the critic alone [-]"
     )

@@ -11,6 +11,7 @@ import torch
 from policies.learned import files
 from policies.learned.description import WEIGHTS, Network
 from policies.learned.extract import array, places
+from policies.learned.pretrained import locate
 from policies.training.config import Training
 from policies.training.derived import folded
 from slipgym.tasks import find
@@ -53,10 +54,10 @@ def load(
     Derived columns count nothing at first. For the arguments see `take`.
 
     Raises:
-        FileNotFoundError: There is nothing at the path.
+        FileNotFoundError: There is nothing at the path, and it is no name of a policy of slipgym.
         ValueError: It is no policy, of another task, or its network is another one.
     """
-    description, weights = files.read(path, WEIGHTS)
+    description, weights = files.read(locate(path), WEIGHTS)
     if description.environment.id != find(config.task).id:
         raise ValueError(f"{path}: is a policy for {description.environment.id}, not for {config.task}")
     if description.network != network(config):

@@ -96,6 +96,12 @@ def begin(config: Training, seeds: Sequence[int], sources: Sequence[str], output
 
 def _try(config: Training) -> None:
     """Makes the learner and its environments: what cannot be made is refused before there is a folder."""
+    chosen = config.privileged_ppo
+    if config.algorithm == "privileged_ppo" and chosen.critic_first and chosen.start is None:
+        raise ValueError(
+            f"privileged_ppo.critic_first = {chosen.critic_first}: the actor must start as a policy; add "
+            "--set privileged_ppo.start=FOLDER (docs/from_nothing.md), or critic_first=0 to do without"
+        )
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # the run warns
         learner = learners.begin(config.model_copy(update={"processes": False}), 0)

@@ -1,6 +1,7 @@
 import pytest
 import yaml
 
+from policies.learned import pretrained, read_description
 from policies.training import files, seeds
 from policies.training.config import Training
 from slipgym.tasks import TASKS
@@ -140,7 +141,9 @@ def test_a_truth_value_of_yaml_is_the_true_friction():
         ({"environment.estimator": "foo"}, "'foo'"),
         ({"derived": {"error": {"slp": 1.0}}}, "derived: unknown column 'slp'"),
         ({"privileged_ppo.mirrored": ["slp"]}, r"privileged_ppo\.mirrored: unknown column 'slp'"),
-        ({"privileged_ppo.start": "nowhere"}, "nothing at 'nowhere'"),
+        ({"privileged_ppo.start": "nowhere"}, "no learned policy at 'nowhere'"),
+        ({"privileged_ppo.start": "hinge_lab"}, "is a policy for slipgym/Hinge-v0, not for LinearSlip"),
+        ({"privileged_ppo.critic_first": 8}, r"critic_first = 8: .* add --set privileged_ppo\.start=FOLDER"),
     ],
 )
 def test_what_cannot_be_made_leaves_no_folder(tmp_path, changes, named):
@@ -165,3 +168,18 @@ def test_a_sweep_is_tried_before_there_is_a_folder_and_does_not_go_on(small, tmp
     path = sweep.begin(small(sweep={"ppo.gamma": {"low": 0.5, "high": 0.9}}), tmp_path)
     with pytest.raises(ValueError, match="a sweep does not go on"):
         run_set.resumed(path, {}, 1, "")
+
+
+@pytest.mark.parametrize(
+    "name", [name for name in files.names() if files.load(name).privileged_ppo.start is not None]
+)
+def test_a_start_of_a_configuration_comes_with_slipgym_and_fits(name):
+    pytest.importorskip("torch")
+    from policies.training.policy_tensors import network
+
+    training = files.load(name)
+    start = read_description(pretrained.folders()[training.privileged_ppo.start])
+    assert start.environment.id == f"slipgym/{training.task}-v0"
+    assert start.network == network(training)
+    for key in ("frame_skip", "action_mode", "load_columns"):
+        assert start.environment.arguments[key] == getattr(training.environment, key)
