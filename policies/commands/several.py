@@ -86,7 +86,7 @@ def usage_errors(*kinds: type[Exception], extra: str = "", hint: str | None = No
 
 
 def environment_arguments(texts: Sequence[str]) -> dict[str, Any]:
-    """Reads `name=value` pairs; `friction_source=true` is a name, which YAML takes for a truth value.
+    """Reads `name=value` pairs; the value in `friction_source=true` is a name.
 
     Dotted keys are those of nested values, and "environment." may stand before them as in a training.
 
@@ -98,8 +98,7 @@ def environment_arguments(texts: Sequence[str]) -> dict[str, Any]:
     """
     from estimator.records import parse_settings
     from policies.training.files import with_values
+    from slipgym.config.base import as_name
 
     values = with_values({}, parse_settings([text.removeprefix("environment.") for text in texts]))
-    if values.get("friction_source") is True:
-        values["friction_source"] = "true"
-    return values
+    return {key: as_name(value) if key == "friction_source" else value for key, value in values.items()}

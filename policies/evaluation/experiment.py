@@ -19,7 +19,7 @@ from policies.learned import read_description
 from policies.learned.pretrained import locate
 from policies.task_names import canonical
 from slipgym import config as configuration
-from slipgym.config.base import Count, Frozen, as_tuple
+from slipgym.config.base import Count, Frozen, as_name, as_tuple
 from slipgym.config.errors import unknown
 from slipgym.config.level import DEFAULT as DEFAULT_LEVEL
 from slipgym.config.level import load_level
@@ -103,7 +103,9 @@ def _named(value: object) -> object:
 class FrictionChoice(Frozen):
     """Friction information of a policy."""
 
-    source: str = Field(description="friction_source of the environment [-]")
+    source: Annotated[str, BeforeValidator(as_name)] = Field(
+        description="friction_source of the environment [-]"
+    )
     estimator: Annotated[Mapping[str, Any] | None, BeforeValidator(_named)] = Field(
         default={"name": DEFAULT_ESTIMATOR},
         description="Name of the estimator, or a mapping of it and its parameters; null: none [-]",

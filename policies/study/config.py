@@ -10,7 +10,7 @@ from pydantic import BeforeValidator, Field, field_validator, model_validator
 from policies.evaluation.experiment import FrictionChoice
 from policies.task_names import canonical
 from slipgym.config import load_randomization
-from slipgym.config.base import Count, Frozen, Positive, PositiveInterval, as_tuple
+from slipgym.config.base import Count, Frozen, Positive, PositiveInterval, as_name, as_tuple
 from slipgym.config.errors import unknown
 from slipgym.config.level import DEFAULT as DEFAULT_LEVEL
 from slipgym.config.level import load_level
@@ -20,7 +20,7 @@ from slipgym.config.yaml_model import names, read_model, validate
 from slipgym.tasks import find
 
 Kind: TypeAlias = Literal["classic", "memory", "recurrent", "learned", "imitation"]
-Source: TypeAlias = Literal["none", "nominal", "estimated", "true"]
+Source: TypeAlias = Annotated[Literal["none", "nominal", "estimated", "true"], BeforeValidator(as_name)]
 SOURCES: tuple[Source, ...] = ("none", "nominal", "estimated", "true")
 BLOCKS_MAX = 1000
 

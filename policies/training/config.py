@@ -13,7 +13,7 @@ from policies.task_names import canonical
 from policies.training import seeds
 from policies.training.algorithms import PPO, SAC, TQC, PrivilegedPPO, RecurrentPPO
 from slipgym.config import load
-from slipgym.config.base import Count, Frozen, Positive, as_tuple
+from slipgym.config.base import Count, Frozen, Positive, as_name, as_tuple
 from slipgym.config.errors import unknown
 from slipgym.config.load import Content, merge, randomization_content
 from slipgym.envs.arguments import CommonArguments, fields
@@ -46,10 +46,7 @@ _Arguments: Any = create_model("_Arguments", __base__=Frozen, **_FIELDS)
 class Environment(_Arguments):
     """Keyword arguments of the environment, as `slipgym.envs.arguments` declares them."""
 
-    @field_validator("friction_source", mode="before")
-    @classmethod
-    def _a_name(cls, given: Any) -> Any:
-        return "true" if given is True else given  # which YAML takes for a truth value
+    _a_name = field_validator("friction_source", mode="before")(as_name)
 
     @model_validator(mode="after")
     def _known(self) -> Self:

@@ -54,6 +54,11 @@ def as_tuple(value: object) -> object:
     return tuple(value) if isinstance(value, list) else value
 
 
+def as_name(value: object) -> object:
+    """Convert True to "true": YAML takes this friction source for a truth value."""
+    return "true" if value is True else value
+
+
 def ordered(pair: tuple[float, float]) -> tuple[float, float]:
     """Return a pair whose first value is not above its second, or raise ValueError."""
     if pair[0] > pair[1]:

@@ -30,7 +30,7 @@ def test_linear_slip_has_160_trials_for_each_friction_choice():
         ({"policies": [{"name": "linear_slap"}]}, r"policies\.0: unknown policy.*linear_slip"),
         ({"policies": [{"name": "hold"}, {"name": "hold"}]}, r"distinct labels"),
         ({"friction": [{"source": "guessed"}]}, r"friction\.0: unknown friction source.*nominal"),
-        ({"friction": [{"source": True}]}, r"friction\.0\.source = True: must be a text"),
+        ({"friction": [{"source": False}]}, r"friction\.0\.source = False: must be a text"),
         ({"friction": [{"source": "true", "estimator": {"name": "kf"}}]}, r"unknown estimator 'kf'.*rls"),
         ({"friction": [{"source": "true", "estimator": {"name": "rls", "p": 1}}]}, r"unknown parameter"),
         ({"friction": [{"source": "true", "lable": "x"}]}, r"unknown key 'lable'; did you mean 'label'"),
@@ -107,3 +107,7 @@ def test_leaving_out_a_material_moves_no_seed(small):
     for trial in plan(small()):
         if trial.material == "case":
             assert trial.seed == kept[trial.keys["options"], trial.number]
+
+
+def test_a_truth_value_of_yaml_is_the_true_friction(small):
+    assert small(friction=[{"source": True}]).friction[0].source == "true"

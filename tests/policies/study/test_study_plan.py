@@ -240,3 +240,10 @@ def test_a_folder_of_policies_that_do_not_act_is_refused(small):
     with pytest.raises(ValueError, match="learned = 'nope': small has no policies of the kind 'learned'"):
         narrowed(small(kinds=["classic"]), learned="nope")
     assert narrowed(small(kinds=["classic"]), learned="nope", kinds=["learned"]).learned == "nope"
+
+
+def test_a_truth_value_of_yaml_is_the_true_friction(small):
+    study = small(
+        worlds=[{"label": "core", "engine": "planar", "contact": "ellipsoid", "sources": [True, "none"]}]
+    )
+    assert study.worlds[0].sources == ("true", "none")
