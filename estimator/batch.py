@@ -48,11 +48,19 @@ class BatchEstimator:
             t: Time [s].
             wrenches: (n, 4) float64, C-contiguous: f_x, f_y, f_n, tau [N, N, N, N m] at the CoP.
             twists: (n, 3) float64, C-contiguous: v_x, v_y, omega [m/s, m/s, rad/s] at the CoP.
+
+        Raises:
+            TypeError: They are no such arrays, or t is no number.
+            ValueError: A shape is another one.
         """
         n = len(self.states)
-        assert wrenches.shape == (n, 4)
-        assert twists.shape == (n, 3)
-        self._update(self.states, self.parameters_array, t, wrenches, twists, self.estimates)
+        if getattr(wrenches, "shape", None) != (n, 4) or getattr(twists, "shape", None) != (n, 3):
+            raise ValueError(f"expected {_WANTED.format(n)}, got {_kind(wrenches)} and {_kind(twists)}")
+        try:
+            self._update(self.states, self.parameters_array, t, wrenches, twists, self.estimates)
+        except TypeError as error:  # numba's
+            given = f"{_kind(wrenches)} and {_kind(twists)} at t = {t!r:.40}"
+            raise TypeError(f"expected {_WANTED.format(n)} at a number t [s], got {given}") from error
 
     def reset(self, indices: Any = None) -> None:
         """Returns rows to their start values.
@@ -96,6 +104,15 @@ class BatchEstimator:
         slipping, halted = self.estimates["slipping"].sum(), self.estimates["halted"].sum()
         lines.append(f"  slipping {slipping}, halted {halted} of {len(self)}; values are medians (range)")
         return "\n".join(lines)
+
+
+_WANTED = "C-contiguous float64 arrays wrenches ({0}, 4) and twists ({0}, 3)"
+
+
+def _kind(array: Any) -> str:
+    if not isinstance(array, np.ndarray):
+        return f"a {type(array).__name__}"
+    return f"{'' if array.flags.c_contiguous else 'not contiguous '}{array.dtype} {array.shape}"
 
 
 def make_batch(name: str, n: int, **parameters: Any) -> BatchEstimator:

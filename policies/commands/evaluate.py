@@ -22,6 +22,7 @@ rotational_slip, hinge, planar_slip, hold,
 fragile_hold, carry, pivot_to, explore, demo), and docs/evaluation.md says what their keys mean and what
 a run writes.
 """
+_OUTPUT = Path("runs")
 app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
 
 
@@ -40,7 +41,7 @@ def main(
     friction_source: Annotated[
         list[str] | None, typer.Option(help="Keep only this source or label of the experiment; repeatable.")
     ] = None,
-    output: Annotated[Path, typer.Option(help="Folder for the run's own folder.")] = Path("runs"),
+    output: Annotated[Path, typer.Option(help="Folder for the run's own folder.")] = _OUTPUT,
     seed: Annotated[int | None, typer.Option(min=0, help="Seed instead of the experiment's.")] = None,
     level: Annotated[
         str | None, typer.Option(help="Level of difficulty instead of the experiment's.")
@@ -65,8 +66,12 @@ def main(
     if policy is not None:
         if demo or experiments:
             raise typer.BadParameter("give experiments or --policy")
-        if level is not None:
-            raise typer.BadParameter(f"with --policy: --set level={level}")
+        for name, value in (("level", level), *(("friction_source", one) for one in friction_source or [])):
+            if value is not None:
+                raise typer.BadParameter(f"with --policy: --set {name}={value}")
+        for name, given in {"output": output != _OUTPUT, "jobs": jobs != -1, "ray": ray}.items():
+            if given:
+                raise typer.BadParameter(f"--{name} is for experiments; --policy runs here, without a folder")
         typer.echo(_outcome(policy, trials or 100, seed, task, set_ or []))
         return
     if set_ or task:
@@ -82,6 +87,8 @@ def main(
             evaluation.narrowed(evaluation.load_experiment(name), trials, seed, friction_source or (), level)
             for name in experiments or ["demo"]
         ]
+        for experiment in chosen:
+            evaluation.check(experiment)
     for experiment in chosen:
         try:
             folder = evaluation.evaluate(experiment, output, jobs, ray=ray)

@@ -22,8 +22,8 @@ from slipgym import config as configuration
 from slipgym.config.base import Count, Frozen, as_name, as_tuple
 from slipgym.config.errors import unknown
 from slipgym.config.level import DEFAULT as DEFAULT_LEVEL
-from slipgym.config.level import load_level
-from slipgym.config.load import Content
+from slipgym.config.level import level_content, load_level
+from slipgym.config.load import Content, randomization_content
 from slipgym.envs.arguments import DEFAULT_ESTIMATOR, ENGINES, FRICTION_SOURCES, one_of
 from slipgym.envs.engines import resolved
 from slipgym.tasks import configure, find
@@ -161,10 +161,10 @@ class Experiment(Frozen):
         validate_default=True,
         description="What moves the bodies: bullet, planar or auto, PyBullet where it is installed [-]",
     )
-    randomization: str | Mapping[str, Any] = Field(
+    randomization: Annotated[str | Mapping[str, Any], BeforeValidator(randomization_content)] = Field(
         default="none", description="What is drawn per episode: a preset, a file or a mapping [-]"
     )
-    level: str | Mapping[str, Any] = Field(
+    level: Annotated[str | Mapping[str, Any], BeforeValidator(level_content)] = Field(
         default=DEFAULT_LEVEL, description="Level of difficulty: a name, a file or a mapping [-]"
     )
     frame_skip: Count | None = Field(
@@ -199,6 +199,10 @@ class Experiment(Frozen):
         for material in self.materials:
             if material not in ("random", *known):
                 raise ValueError(unknown("material", material, ["random", *known]))
+        varied = {f"vary.{name}": values for name, values in self.vary.items()}
+        for name, values in {"materials": self.materials, **varied}.items():
+            if not values or len(set(map(repr, values))) < len(values):
+                raise ValueError(f"{name} = {list(values)}: expected values, each once")
         if "material" in {**self.options, **self.vary}:
             raise ValueError("materials are listed under materials, not among the options")
         for options in self.combinations():

@@ -19,7 +19,7 @@ from policies.controllers.rate import at_rate
 from policies.controllers.slip_memory import SlipMemory
 from policies.evaluation.experiment import Experiment
 from policies.evaluation.metrics import measure, measures
-from policies.evaluation.plan import Trial, pieces
+from policies.evaluation.plan import Trial, pieces, plan
 from policies.evaluation.recording import INFOS, Recorder, Recording
 from policies.learned import LearnedPolicy
 from policies.stepping import batch_steps, environment_for, steps
@@ -33,6 +33,27 @@ class Result(NamedTuple):
     """Its row of the table of trials."""
     series: dict[str, np.ndarray] | None
     """Its steps as columns; kept of the first trial in each cell."""
+
+
+def check(experiment: Experiment) -> None:
+    """Begins the first trial of every cell: what cannot run is refused before any trial has.
+
+    A policy that comes with slipgym acts once.
+
+    Raises:
+        ValueError: A policy refuses its parameters or the observations, or options contradict each other.
+    """
+    task = find(experiment.task)
+    for trial in (trial for trial in plan(experiment) if not trial.number):
+        try:
+            policy = make_policy(experiment, trial)
+            keywords = {**environment(experiment, trial), **policies.modes(policy)}
+            with environment_for(policy, task.id, **keywords) as env:
+                observation, _ = env.reset(seed=trial.seed, options=dict(trial.options))
+                if _keeps_all_in_its_state(policy):
+                    policy.predict(observation)
+        except ValueError as error:
+            raise ValueError(f"{trial.policy.title}, {trial.friction.title}: {error}") from error
 
 
 def run_trials(
@@ -90,10 +111,13 @@ def recordings(experiment: Experiment, trials: Sequence[Trial]) -> list[Recordin
     """Runs trials as `run_block` does, and keeps their steps."""
     with _named(trials[0]):
         policy = make_policy(experiment, trials[0])
-        keeps_all_in_its_state = isinstance(policy, ForcePolicy | NoFrictionInfo | SlipMemory | LearnedPolicy)
-        if experiment.engine == "planar" and keeps_all_in_its_state:
+        if experiment.engine == "planar" and _keeps_all_in_its_state(policy):
             return _record_block(experiment, trials, policy)
     return [record(experiment, trial) for trial in trials]
+
+
+def _keeps_all_in_its_state(policy: policies.Policy) -> bool:
+    return isinstance(policy, ForcePolicy | NoFrictionInfo | SlipMemory | LearnedPolicy)
 
 
 @contextmanager

@@ -29,22 +29,17 @@ class Info(NamedTuple):
     read: str
     """Expression for environment i in terms of the arguments of `write_infos`; {0} and {1} are replaced by an
     element's indices."""
-    fields: tuple[str, ...] = ()
-    """What the last index is replaced by, if these are not numbers."""
 
     @property
     def reads(self) -> list[str]:
         """An expression for every element, in C order."""
-        indices: list[Sequence[Any]] = [range(length) for length in self.shape]
-        if self.fields:
-            indices[-1] = self.fields
-        return [self.read.format(*index) for index in product(*indices)]
+        return [self.read.format(*index) for index in product(*map(range, self.shape))]
 
 
 NUMBERS = (
     Info("true", (3,), "-, -, m", "true (mu_s, mu_c, r) now, mean of both fingers", "ground_truth[i, {0}]"),
     Info("true_per_finger", (2, 3), "-, -, m", "true (mu_s, mu_c, r) of each finger now",
-         "pads[i, {0}].{1}", ("mu_s", "mu_c", "r")),
+         "episodes[i].present_friction[{0}, {1}]"),
     Info("estimated", (3,), "-, -, m", "estimated (mu_s, mu_c, r), mean of both fingers",
          "estimated[i, {0}]"),
     Info("estimated_per_finger", (2, 3), "-, -, m", "estimated (mu_s, mu_c, r) of each finger",

@@ -143,10 +143,11 @@ def equip_rows(starts, values, hardware, patches, state, cells, force_torque):
                 force_torque[i, f].bias[a] = scale * start.biases[f, a]
                 if own.randomized:
                     force_torque[i, f].noise[a] = value.noise_scale * own.noise[a]
-        first, second, ground_truth = pads[i, 0], pads[i, 1], state.ground_truth
-        ground_truth[i, 0] = 0.5 * (first.mu_s + second.mu_s)
-        ground_truth[i, 1] = 0.5 * (first.mu_c + second.mu_c)
-        ground_truth[i, 2] = 0.5 * (first.r + second.r)
+        present = state.episodes[i].present_friction
+        for f in range(2):
+            present[f, 0], present[f, 1], present[f, 2] = pads[i, f].mu_s, pads[i, f].mu_c, pads[i, f].r
+        for k in range(3):
+            state.ground_truth[i, k] = 0.5 * (present[0, k] + present[1, k])
         note_pads(state.episodes[i], pads[i])
         start_sensors(force_torque[i], slip_sensors[i], start.keys, start.shares)
         start_gripper(state.grippers[i], start.keys[1, 1])

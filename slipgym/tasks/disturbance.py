@@ -32,6 +32,7 @@ FIELDS = [
     ("mu_c", "f8"),  # Coulomb friction, likewise [-]
     ("r", "f8"),  # radius of the equivalent rim contact, likewise [m]
     ("finger_friction", "f8", 2),  # friction of either pad over the mean [-]
+    ("present_friction", "f8", (2, 3)),  # mu_s, mu_c [-] and r [m] of each finger now
     # as in PAD, `soft_pad.at_load` reads the first three
     ("reference_force", "f8"),  # normal force at which mu_s, mu_c and r hold [N]
     ("load_exponent", "f8"),  # friction falls with the normal force to the power of this [-]
@@ -178,7 +179,9 @@ def disturb(episodes, worlds, pads, friction):
         for f in range(2):
             own = factor * episode.finger_friction[f]
             pads[i, f].mu_s, pads[i, f].mu_c = own * episode.mu_s, own * episode.mu_c
-        first, second = present_friction(pads[i, 0]), present_friction(pads[i, 1])
-        friction[i, 0], friction[i, 1] = 0.5 * (first[0] + second[0]), 0.5 * (first[1] + second[1])
-        if pads[i, 0].radius_exponent != 0.0:
-            friction[i, 2] = 0.5 * (first[2] + second[2])
+            mu_s, mu_c, r = present_friction(pads[i, f])
+            episode.present_friction[f, 0], episode.present_friction[f, 1] = mu_s, mu_c
+            if pads[i, f].radius_exponent != 0.0:
+                episode.present_friction[f, 2] = r
+        for k in range(3):
+            friction[i, k] = 0.5 * (episode.present_friction[0, k] + episode.present_friction[1, k])

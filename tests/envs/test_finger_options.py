@@ -168,6 +168,19 @@ def test_scale_leads_back_to_equal_fingers(make):
 
 
 @pytest.mark.parametrize("engine", ["bullet", "planar"])
+def test_the_truth_of_each_finger_is_that_under_its_load(make, engine):
+    pad = {"pad": {"load_exponent": 0.3, "radius_exponent": 0.1}}
+    env = make(LINEAR, engine=engine, material="wood", config={"contact": pad})
+    _, info = env.reset(seed=0, options={"finger_friction": (0.9, 1.2)})
+    start = info["true_per_finger"]
+    for _ in range(40):
+        *_, info = env.step(FIRM)
+        np.testing.assert_allclose(info["true"], info["true_per_finger"].mean(axis=0), rtol=1e-12)
+    law = (info["grip_force"] / 5.0) ** -0.3  # of the last but one force, which hardly changes any more
+    np.testing.assert_allclose(info["true_per_finger"][:, 1], start[:, 1] * law, rtol=2e-2)
+
+
+@pytest.mark.parametrize("engine", ["bullet", "planar"])
 def test_drift_and_jumps_keep_the_fingers_factors(make, engine):
     jump = {
         "kind": "friction_jump",

@@ -12,7 +12,7 @@ def records(simulation):
     plant, episode = simulation.plant, simulation.episode
     return {
         "true": simulation.ground_truth[:, :3],
-        "true_per_finger": np.stack([plant.pads[name] for name in ("mu_s", "mu_c", "r")], axis=2),
+        "true_per_finger": episode["present_friction"],
         "estimated": simulation.estimated[:, :3],
         "estimated_per_finger": simulation.per_finger,
         "slip": plant.world["slip"],

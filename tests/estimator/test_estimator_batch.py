@@ -129,14 +129,20 @@ def test_a_sample_whose_time_does_not_advance_or_is_not_finite_is_skipped(name, 
 
 
 @pytest.mark.parametrize(
-    ("wrenches", "twists"),
+    ("wrenches", "twists", "error", "got"),
     [
-        (np.zeros((3, 4)), np.zeros((2, 3))),
-        (np.zeros((2, 3)), np.zeros((2, 4))),
-        (np.zeros((2, 4), np.float32), np.zeros((2, 3))),
-        (np.zeros((2, 8))[:, ::2], np.zeros((2, 3))),
+        (np.zeros((3, 4)), np.zeros((2, 3)), ValueError, r"float64 \(3, 4\) and float64 \(2, 3\)"),
+        (np.zeros((2, 3)), np.zeros((2, 4)), ValueError, r"float64 \(2, 3\) and float64 \(2, 4\)"),
+        ([[0.0] * 4] * 2, np.zeros((2, 3)), ValueError, r"a list and float64 \(2, 3\)"),
+        (np.zeros((2, 4), np.float32), np.zeros((2, 3)), TypeError, r"float32 \(2, 4\) and .* at t = 0\.0"),
+        (
+            np.zeros((2, 8))[:, ::2],
+            np.zeros((2, 3)),
+            TypeError,
+            r"not contiguous float64 \(2, 4\) and float64",
+        ),
     ],
 )
-def test_wrong_arrays_are_refused(name, wrenches, twists):
-    with pytest.raises((AssertionError, TypeError)):
+def test_wrong_arrays_are_refused(name, wrenches, twists, error, got):
+    with pytest.raises(error, match=rf"arrays wrenches \(2, 4\) and twists \(2, 3\).*, got {got}"):
         estimator.make_batch(name, 2).update(0.0, wrenches, twists)
