@@ -53,7 +53,7 @@ def test_an_experiment_of_ones_own_runs_in_any_folder(tmp_path, invoke, monkeypa
     [
         (["--friction-source", "true"], "with --policy: --set friction_source=true"),
         (["--level", "hard"], "with --policy: --set level=hard"),
-        (["--output", "runs"], "--output is for experiments"),
+        (["--output", "mine"], "--output is for experiments"),
         (["--jobs", "1"], "--jobs is for experiments"),
         (["--ray", "local"], "--ray is for experiments"),
     ],
