@@ -38,7 +38,7 @@ class Result(NamedTuple):
 def check(experiment: Experiment) -> None:
     """Begins the first trial of every cell: what cannot run is refused before any trial has.
 
-    A policy that comes with slipgym acts once.
+    A policy that comes with slipgym acts once. One of your own does not: its errors need their traceback.
 
     Raises:
         ValueError: A policy refuses its parameters or the observations, or options contradict each other.
@@ -50,7 +50,7 @@ def check(experiment: Experiment) -> None:
             keywords = {**environment(experiment, trial), **policies.modes(policy)}
             with environment_for(policy, task.id, **keywords) as env:
                 observation, _ = env.reset(seed=trial.seed, options=dict(trial.options))
-                if _keeps_all_in_its_state(policy):
+                if type(policy).__module__.startswith("policies."):
                     policy.predict(observation)
         except ValueError as error:
             raise ValueError(f"{trial.policy.title}, {trial.friction.title}: {error}") from error
@@ -111,13 +111,10 @@ def recordings(experiment: Experiment, trials: Sequence[Trial]) -> list[Recordin
     """Runs trials as `run_block` does, and keeps their steps."""
     with _named(trials[0]):
         policy = make_policy(experiment, trials[0])
-        if experiment.engine == "planar" and _keeps_all_in_its_state(policy):
+        keeps_all_in_its_state = isinstance(policy, ForcePolicy | NoFrictionInfo | SlipMemory | LearnedPolicy)
+        if experiment.engine == "planar" and keeps_all_in_its_state:
             return _record_block(experiment, trials, policy)
     return [record(experiment, trial) for trial in trials]
-
-
-def _keeps_all_in_its_state(policy: policies.Policy) -> bool:
-    return isinstance(policy, ForcePolicy | NoFrictionInfo | SlipMemory | LearnedPolicy)
 
 
 @contextmanager

@@ -213,6 +213,11 @@ def experiment_of(study: Study, contact: str, values: Mapping[str, Any]) -> Expe
     return validate({**values, **same}, Experiment, values["name"])
 
 
+def first_preset(study: Study) -> str:
+    """The preset of the first world in which constant grips play."""
+    return (study.worlds[0].presets or study.presets)[0]
+
+
 def conditions(
     study: Study, learned: Shelf, forces: Mapping[str, float] = MappingProxyType({})
 ) -> list[Condition]:
@@ -242,13 +247,10 @@ def conditions(
         )
         for task in study.tasks
     }
-    world, estimator = study.worlds[0], study.estimators[0]
-    first = (world.presets or study.presets)[0]
+    world, preset = study.worlds[0], first_preset(study)
+    grip = UNCHANGED, "constant", "none", study.estimators[0], "constant_force"
     constant = [
-        Condition(
-            *(world, task, first, UNCHANGED, "constant", "none", estimator, "constant_force"),
-            *(block, study.episodes, skips[task], force),
-        )
+        Condition(world, task, preset, *grip, block, study.episodes, skips[task], force)
         for task, force in forces.items()
         for block in range(study.blocks)
     ]

@@ -13,7 +13,7 @@ from tqdm import tqdm
 from policies.evaluation.plan import plan
 from policies.policy_leaderboard.entries import constants, strongest
 from policies.study import tables
-from policies.study.conditions import conditions, experiment_of, missing, policies_of
+from policies.study.conditions import conditions, experiment_of, first_preset, missing, policies_of
 from policies.study.config import BLOCKS_MAX, Study
 from policies.study.store import Store, episodes, mark
 from policies.versions import write_origin
@@ -77,11 +77,11 @@ def constant_grips(
 ) -> dict[str, float]:
     """The best constant grip of each task of a study [N].
 
-    It is chosen on other episodes than those of the study, of the first preset, on the planar engine. So it
-    is tuned to their distribution, which nobody could do for a single new object. The folder keeps it.
+    It is chosen on other episodes than those of the study, of the first world and its first preset, but on
+    the planar engine. So it is tuned to their distribution, which nobody could do for a single new object.
+    The folder keeps it.
     """
     found = {}
-    contacts = [world.contact for world in study.worlds if world.engine == "planar"]
     for task in tqdm(study.tasks, desc="constant grips", unit="task", disable=not progress):
         values = {
             "name": f"constant_{task.rpartition(':')[2]}",
@@ -91,9 +91,9 @@ def constant_grips(
             "policies": [{"name": "constant_force"}],
             "friction": [{"source": "none"}],
             "engine": "planar",
-            "randomization": study.presets[0],
+            "randomization": first_preset(study),
         }
-        experiment = experiment_of(study, contacts[0] if contacts else "ellipsoid", values)
+        experiment = experiment_of(study, study.worlds[0].contact, values)
         path = folder / f"{experiment.name}__{mark(experiment, str(candidates))}.json"
         if not path.exists():
             members = constants(experiment.environment_config().gripper, candidates, experiment.config)

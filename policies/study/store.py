@@ -24,9 +24,6 @@ from policies.study.conditions import Condition
 from policies.study.config import Study
 from slipgym.atomic_io import new_folder
 from slipgym.config import files
-from slipgym.config.level import load_level
-from slipgym.config.load import load_randomization
-from slipgym.tasks import find
 
 _TOP = Path(policies.__file__).parents[1]
 _SOURCES = (
@@ -73,11 +70,9 @@ def fingerprint(condition: Condition, study: Study) -> str:
 def mark(experiment: Experiment, more: str) -> str:
     """Sixteen digits that change with an experiment, with something more and with the sources that run it.
 
-    Of a level, a randomization and a module that it names, the content counts; not what that module imports.
+    Of a module that it names, the content counts; not what that module imports.
     """
-    level = load_level(experiment.level, find(experiment.task).key).level
-    drawn = load_randomization(experiment.randomization)
-    asked = json.dumps([each.model_dump(mode="json") for each in (experiment, level, drawn)], sort_keys=True)
+    asked = json.dumps(experiment.model_dump(mode="json"), sort_keys=True)
     return hashlib.sha256("\n".join([asked, more, sources(), _modules(experiment)]).encode()).hexdigest()[:16]
 
 
