@@ -76,7 +76,10 @@ def new_folder(path: Path) -> Iterator[Path]:
         for each in partial.rglob("*"):
             _sync(each)
         _sync(partial)
-        partial.rename(path)
+        try:
+            partial.rename(path)
+        except OSError as error:  # another process was faster
+            raise (FileExistsError(f"{path} exists already") if path.exists() else error) from None
     except BaseException:
         shutil.rmtree(partial, ignore_errors=True)
         raise

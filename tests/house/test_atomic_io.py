@@ -158,3 +158,14 @@ def test_no_permission_and_a_full_disk_are_found_out(tmp_path, monkeypatch, call
         with pytest.raises(type(error), match=f"cannot write to {tmp_path}.*: {error.strerror}"):
             atomic_io.check_folder(tmp_path / "runs")
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_folder_that_another_process_made_meanwhile_stays(tmp_path):
+    with (
+        pytest.raises(FileExistsError, match="run exists already"),
+        atomic_io.new_folder(tmp_path / "run") as folder,
+    ):
+        (folder / "mine").touch()
+        (tmp_path / "run").mkdir()
+        (tmp_path / "run" / "theirs").touch()
+    assert [path.relative_to(tmp_path).as_posix() for path in tmp_path.rglob("*")] == ["run", "run/theirs"]
