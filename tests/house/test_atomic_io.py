@@ -161,11 +161,12 @@ def test_no_permission_and_a_full_disk_are_found_out(tmp_path, monkeypatch, call
 
 
 def test_a_folder_that_another_process_made_meanwhile_stays(tmp_path):
-    with (
-        pytest.raises(FileExistsError, match="run exists already"),
-        atomic_io.new_folder(tmp_path / "run") as folder,
-    ):
-        (folder / "mine").touch()
-        (tmp_path / "run").mkdir()
-        (tmp_path / "run" / "theirs").touch()
-    assert [path.relative_to(tmp_path).as_posix() for path in tmp_path.rglob("*")] == ["run", "run/theirs"]
+    def write():
+        with atomic_io.new_folder(tmp_path / "run") as folder:
+            (folder / "mine").touch()
+            (tmp_path / "run").mkdir()
+            (tmp_path / "run" / "theirs").touch()
+
+    with pytest.raises(FileExistsError, match="run exists already"):
+        write()
+    assert {path.relative_to(tmp_path).as_posix() for path in tmp_path.rglob("*")} == {"run", "run/theirs"}
