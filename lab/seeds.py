@@ -15,7 +15,6 @@ from policies.policy_leaderboard.entries import Member
 from policies.policy_leaderboard.run import WORLDS, play_in
 from policies.training import curve, export, files, folder, run_set
 from policies.training.config import Training
-from policies.versions import stamped
 from slipgym.tasks import find
 
 PASSES = {
@@ -57,10 +56,7 @@ def _after(
         wanted[seed] = files.changed(config, {"privileged_ppo.start": str(start.policy.resolve())})
     found = _finished(root, wanted)
     if missing := [seed for seed in seeds if seed not in found]:
-        path = stamped(root, f"{find(config.task).key}__{config.algorithm}")
-        for seed in missing:
-            folder.begin(path / f"{config.environment.friction_source}__{seed}", wanted[seed], seed)
-        run_set.train_all(path, jobs)
+        run_set.train_all(run_set.lay_out([(wanted[seed], seed) for seed in missing], root), jobs)
         found = _finished(root, wanted)
     nothing = Trained(Path(), 0, 0.0)
     return {seed: _sum(before.get(seed, nothing), found[seed]) for seed in seeds}

@@ -22,8 +22,9 @@ from slipgym import config as configuration
 from slipgym.config.base import Count, Frozen, as_name, as_tuple
 from slipgym.config.errors import unknown
 from slipgym.config.level import DEFAULT as DEFAULT_LEVEL
-from slipgym.config.level import level_content, load_level
+from slipgym.config.level import load_level
 from slipgym.config.load import Content, randomization_content
+from slipgym.config.yaml_model import file_content
 from slipgym.envs.arguments import DEFAULT_ESTIMATOR, ENGINES, FRICTION_SOURCES, one_of
 from slipgym.envs.engines import resolved
 from slipgym.tasks import configure, find
@@ -164,7 +165,7 @@ class Experiment(Frozen):
     randomization: Annotated[str | Mapping[str, Any], BeforeValidator(randomization_content)] = Field(
         default="none", description="What is drawn per episode: a preset, a file or a mapping [-]"
     )
-    level: Annotated[str | Mapping[str, Any], BeforeValidator(level_content)] = Field(
+    level: Annotated[str | Mapping[str, Any], BeforeValidator(file_content)] = Field(
         default=DEFAULT_LEVEL, description="Level of difficulty: a name, a file or a mapping [-]"
     )
     frame_skip: Count | None = Field(

@@ -17,8 +17,8 @@ from policies.learned.description import TRAINING, WEIGHTS, Description, Environ
 from policies.learned.extract import ALGORITHMS, acting_tensors, algorithm_of, array, critic_of, network_of
 from policies.learned.fitting import column_of
 from policies.versions import versions
-from slipgym.config.level import level_content
 from slipgym.config.load import content, randomization_content
+from slipgym.config.yaml_model import file_content
 
 
 def save(
@@ -144,7 +144,7 @@ def described(environment: str, arguments: Mapping[str, Any]) -> dict[str, Any]:
     """
     engine = {} if find_spec("pybullet") else {"engine": "planar"}  # the columns are the same
     # a policy's file names no other files
-    readers = {"config": content, "randomization": randomization_content, "level": level_content}
+    readers = {"config": content, "randomization": randomization_content, "level": file_content}
     arguments = {
         name: readers[name](value) if name in readers else value for name, value in arguments.items()
     }

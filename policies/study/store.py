@@ -81,8 +81,8 @@ def _modules(experiment: Experiment) -> str:
     estimators = [choice.estimator["name"] for choice in experiment.friction if choice.estimator]
     names = [experiment.task, *(policy.name for policy in experiment.policies), *estimators]
     modules = {name.partition(":")[0] for name in names if is_reference(name) and not Path(name).is_dir()}
-    files = (importlib.import_module(module).__file__ for module in modules)
-    return _digest(Path(file) for file in files if file)
+    sources = (importlib.import_module(module).__file__ for module in modules)
+    return _digest(Path(source) for source in sources if source)
 
 
 @cache

@@ -15,8 +15,8 @@ from policies.training.algorithms import PPO, SAC, TQC, PrivilegedPPO, Recurrent
 from slipgym.config import load
 from slipgym.config.base import Count, Frozen, Positive, as_name, as_tuple
 from slipgym.config.errors import unknown
-from slipgym.config.level import level_content
 from slipgym.config.load import Content, merge, randomization_content
+from slipgym.config.yaml_model import file_content
 from slipgym.envs.arguments import CommonArguments, fields
 from slipgym.registration import ENVIRONMENTS
 from slipgym.tasks import configure, find
@@ -29,7 +29,7 @@ _DIFFERENT: dict[str, Any] = {"randomization": "train", "config": {}}
 _TYPES: dict[str, Any] = {
     "observation_mode": Literal["flat", "deviations", "sensor"],
     "randomization": Annotated[str | Mapping[str, Any], BeforeValidator(randomization_content)],
-    "level": Annotated[str | Mapping[str, Any], BeforeValidator(level_content)],
+    "level": Annotated[str | Mapping[str, Any], BeforeValidator(file_content)],
     "config": Content,
     "history": Annotated[int, Field(le=1024)],
 }

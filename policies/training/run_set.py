@@ -87,10 +87,15 @@ def begin(config: Training, seeds: Sequence[int], sources: Sequence[str], output
     ] or [config]
     for condition in conditions:
         _try(condition)
-    path = stamped(output, f"{find(config.task).key}__{config.algorithm}")
-    for condition in conditions:
-        for seed in seeds:
-            folder.begin(path / f"{condition.environment.friction_source}__{seed}", condition, seed)
+    return lay_out([(condition, seed) for condition in conditions for seed in seeds], output)
+
+
+def lay_out(runs: Sequence[tuple[Training, int]], output: Path) -> Path:
+    """Makes a study's folder in `output`, with one for each run of a task: its configuration and seed."""
+    first = runs[0][0]
+    path = stamped(output, f"{find(first.task).key}__{first.algorithm}")
+    for config, seed in runs:
+        folder.begin(path / f"{config.environment.friction_source}__{seed}", config, seed)
     return path
 
 

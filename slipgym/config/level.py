@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping
-from pathlib import Path
 from typing import Any, NamedTuple
 
 from pydantic import Field
@@ -62,17 +61,6 @@ class Chosen(NamedTuple):
     def argument(self) -> str | dict[str, Any]:
         """Argument that chooses it again, JSON-able once a task has accepted its settings."""
         return self.name or self.level.model_dump(mode="json", exclude_unset=True)
-
-
-def level_content(choice: Any) -> Any:
-    """A level's name or a mapping as it is; the content of a file, so that a path need not be kept.
-
-    Raises:
-        FileNotFoundError: The file does not exist.
-        ValueError: It holds no mapping.
-    """
-    is_file = isinstance(choice, str | os.PathLike) and Path(choice).suffix in (".yaml", ".yml")
-    return files.read(Path(choice)) if is_file else choice
 
 
 def level_names(task: str) -> list[str]:

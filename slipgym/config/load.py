@@ -12,8 +12,8 @@ from slipgym.config import files
 from slipgym.config.errors import unknown
 from slipgym.config.randomization import Randomization
 from slipgym.config.root import Config
+from slipgym.config.yaml_model import file_content, read_model, validate
 from slipgym.config.yaml_model import names as names_in
-from slipgym.config.yaml_model import read_model, validate
 
 Overrides = str | os.PathLike[str] | Mapping[str, Any]
 Content = Annotated[Mapping[str, Any], BeforeValidator(lambda given: content(given))]
@@ -84,9 +84,7 @@ def randomization_content(choice: Any) -> Any:
         FileNotFoundError, ValueError: As those of `load_randomization`.
     """
     load_randomization(choice)
-    if isinstance(choice, str | os.PathLike) and choice not in names("randomization"):
-        return files.read(Path(choice))
-    return choice
+    return file_content(choice)
 
 
 def load_randomization(choice: Overrides = "none", tasks: Iterable[str] | None = None) -> Randomization:

@@ -47,6 +47,20 @@ def read_model(
     return validate(values, model, source, context)
 
 
+def file_content(choice: Any) -> Any:
+    """The content of a choice that is the path of a YAML file, so that a path need not be kept; others as is.
+
+    Raises:
+        FileNotFoundError: The file does not exist.
+        ValueError: It holds no mapping.
+    """
+    return files.read(Path(choice)) if _is_file(choice) else choice
+
+
+def _is_file(choice: Any) -> bool:
+    return isinstance(choice, str | os.PathLike) and Path(choice).suffix in (".yaml", ".yml")
+
+
 def chosen(
     choice: Choice, kind: str, valid: Collection[str], of: str = ""
 ) -> tuple[Mapping[str, Any], str, str]:
@@ -64,7 +78,7 @@ def chosen(
             f"{kind} = {choice!r} must be a name, a path or a mapping; names: {', '.join(valid)}"
         )
     path = Path(choice)
-    if path.suffix in (".yaml", ".yml"):
+    if _is_file(choice):
         return files.read(path), os.fspath(path), ""
     if str(choice) not in valid:
         raise ValueError(unknown(f"{kind}{of}", str(choice), valid, yaml_beside(path)))

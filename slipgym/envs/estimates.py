@@ -17,6 +17,7 @@ from slipgym._numba.compiled import compiled
 from slipgym.config import Config
 from slipgym.config.sensors import SensorsConfig
 from slipgym.sensors.markers import COUNT
+from slipgym.tasks.compile import first_lines
 
 LATENCY = "velocity_delay"
 """Parameter of an estimator: the latency of the slip velocity."""
@@ -106,19 +107,19 @@ def compiled_update(fingers: estimators.BatchEstimator) -> tuple[Any, Any]:
     except (AttributeError, KeyError, NumbaError, RuntimeError, TypeError) as error:
         raise ValueError(
             f"estimator {fingers.name!r}: update_batch must be a function of numba.njit without a signature "
-            f"of its own: {_first_line(error)}"
+            f"of its own: {_said(error)}"
         ) from None
     return update, signature
 
 
-def _first_line(error: Exception) -> str:
+def _said(error: Exception) -> str:
     """What is wrong, of an error of numba with its place; KeyError(name): an array without such a field."""
     if isinstance(error, KeyError):
         return f"no array has a field {error.args[0]!r}"
+    if not isinstance(error, NumbaError):
+        return str(error)
     loc = getattr(error, "loc", None)
-    place = "" if loc is None else f"{loc.filename}:{loc.line}: "
-    lines = (line for line in str(error).splitlines() if line and not line.startswith("Failed in nopython"))
-    return place + shorten(next(lines, type(error).__name__), 300)
+    return ("" if loc is None else f"{loc.filename}:{loc.line}: ") + shorten(first_lines(error), 300)
 
 
 UNCHANGED = leave, update_signature(_ANY, _ANY)

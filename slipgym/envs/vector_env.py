@@ -229,8 +229,9 @@ class SlipVectorEnv(Conventions, gym.vector.VectorEnv[Any, np.ndarray, np.ndarra
             try:
                 self.simulation.reset_rows(some, generators, options, self._material)
             except ValueError as error:
-                where = "" if asked is None else asked.place(options, some[0])
-                raise ValueError(f"{where}{error}") from None
+                if asked is None or not (where := asked.place(options, some[0])):
+                    raise
+                raise ValueError(f"{where}{error}") from error
             self._observer.begin(some)
             self._pictures.begin(some)
             self._ready[some] = True

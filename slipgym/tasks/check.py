@@ -37,8 +37,7 @@ def check(task: Task[Any], steps: int = 20) -> list[str]:
     Returns:
         A text of a few lines for each function with a fault: an exception such as that of a misspelled
         field, a wrong kind of return value, a number that is not finite, or a record that it may not write,
-        with function, file and line.
-        Empty if there is none.
+        with function, file and line. Empty if there is none.
 
     Raises:
         ValueError: The settings are not valid, or `start` leaves `steps` below 1.

@@ -209,7 +209,7 @@ def _fault(function: Function) -> str:
         return _unknown_field(function, str(error.args[0]))
     except NumbaError as error:
         loc = getattr(error, "loc", None)
-        return function.fault(_first_lines(error), *(() if loc is None else (loc.line, loc.filename)))
+        return function.fault(first_lines(error), *(() if loc is None else (loc.line, loc.filename)))
     kind = next(each.return_type for each in template.cases if each.args == arguments)
     if _returns(kind, function.returns):
         return ""
@@ -223,7 +223,7 @@ def _returns(kind: Any, wanted: str) -> bool:
     return wanted not in (NUMBER, TRUTH) or isinstance(kind, _SCALAR)
 
 
-def _first_lines(error: NumbaError) -> str:
+def first_lines(error: NumbaError) -> str:
     """What numba says first, with the names of records in place of all their fields."""
     text = str(error)
     for name, kind in _TYPES.items():

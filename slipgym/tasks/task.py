@@ -87,8 +87,8 @@ class Task(Generic[SettingsT]):
     `world` a WORLD record.
 
     Raises:
-        ValueError: The id is malformed, the task has neither `success` nor `violated`, or the ends of a
-            column or the scale of a term are no numbers in order.
+        ValueError: The id is malformed, the task has neither `success` nor `violated`, a column's low is not
+            below its high, or a term's scale is not finite.
     """
 
     id: str

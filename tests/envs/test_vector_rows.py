@@ -168,3 +168,4 @@ def test_an_error_names_the_row(row):
     with pytest.raises(ValueError, match="unknown material 'nope'") as common:
         envs.reset(seed=0, options={"material": "nope", "rows": [None, {"mu_s": 0.7}, None]})
     assert "rows" not in str(common.value)
+    assert common.value.__cause__ is None  # raised again as it was, with the traceback of a task of one's own

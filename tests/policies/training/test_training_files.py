@@ -183,3 +183,10 @@ def test_a_start_of_a_configuration_comes_with_slipgym_and_fits(name):
     assert start.network == network(training)
     for key in ("frame_skip", "action_mode", "load_columns"):
         assert start.environment.arguments[key] == getattr(training.environment, key)
+
+
+def test_a_level_from_a_file_is_kept_as_its_content(tmp_path):
+    path = tmp_path / "level.yaml"
+    path.write_text("settings: {tolerance: 0.004}\n", encoding="utf-8")
+    chosen = files.chosen("linear_slip", {}, [f"environment.level={path}"])
+    assert chosen.environment.level == {"settings": {"tolerance": 0.004}}
