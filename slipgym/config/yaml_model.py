@@ -48,7 +48,7 @@ def read_model(
 
 
 def file_content(choice: Any) -> Any:
-    """The content of a choice that is the path of a YAML file, so that a path need not be kept; others as is.
+    """Reads a choice that is the path of a YAML file, so that a path need not be kept; returns others as is.
 
     Raises:
         FileNotFoundError: The file does not exist.

@@ -224,7 +224,7 @@ def _returns(kind: Any, wanted: str) -> bool:
 
 
 def first_lines(error: NumbaError) -> str:
-    """What numba says first, with the names of records in place of all their fields."""
+    """Returns what numba says first, with the names of records in place of all their fields."""
     text = str(error)
     for name, kind in _TYPES.items():
         text = text.replace(str(kind), name)
