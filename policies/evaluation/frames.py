@@ -45,7 +45,12 @@ def read_table(path: Path, words: Sequence[str]) -> pd.DataFrame:
 
 
 def text(interval: Sequence[float], heading: str) -> str:
-    """Value, low and high as words, such as "0.42 (0.40 to 0.44)"; in % where the heading says so."""
+    """Value, low and high as words, such as "0.42 (0.40 to 0.44)"; in % where the heading says so.
+
+    A value that is NaN is a dash.
+    """
+    if np.isnan(interval[0]):
+        return "–"
     scale = 100.0 if heading.endswith("[%]") else 1.0
     value, low, high = (scale * number for number in interval)
     digits = 0 if scale > 1.0 else 2 if abs(value) < 10.0 else 1

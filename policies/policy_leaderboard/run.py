@@ -28,9 +28,15 @@ def episodes_of(
     """Plays episodes with a policy on the engine "planar" or "bullet"; episode i has the seed i.
 
     The arguments are further ones of the environments, such as `level`.
+
+    Raises:
+        ValueError: The policy does not fit, or acts beyond the action space; named in the error.
     """
     made = {**arguments, **member.arguments}
-    return play_episodes(task, member.policy, made, range(episodes), engine=engine)
+    try:
+        return play_episodes(task, member.policy, made, range(episodes), engine=engine)
+    except ValueError as error:
+        raise ValueError(f"{member.name}: {error}") from error
 
 
 def play_all(

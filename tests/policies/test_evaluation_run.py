@@ -86,6 +86,14 @@ def test_a_run_of_true_friction_alone_reports_it(small, tmp_path):
     assert "constant_force  true " in report(folder)
 
 
+def test_a_run_without_an_estimator_has_dashes_for_estimates(small, tmp_path):
+    friction = [{"source": "true", "estimator": None}]
+    folder = evaluate(small(friction=friction, trials=1), tmp_path, progress=False)
+    page = (folder / "summary.md").read_text(encoding="utf-8")
+    assert "| –" in page
+    assert "nan" not in page
+
+
 @pytest.mark.slow
 def test_results_do_not_depend_on_the_number_of_processes(small):
     experiment = small()

@@ -246,3 +246,12 @@ def test_what_is_asked_for_twice_plays_once(tmp_path, monkeypatch):
     assert done.exit_code == 0, done.output
     (table,) = tmp_path.glob("*/policies.csv")
     assert len(pd.read_csv(table)) == 1
+
+
+def test_an_action_that_is_not_finite_names_its_policy():
+    class Lost:
+        def predict(self, observation, state=None, episode_start=None, deterministic=True):
+            return np.full((len(observation), 1), np.nan), state
+
+    with pytest.raises(ValueError, match=r"^lost: actions\[0, 0\] .* = nan"):
+        episodes_of("hold", Member("lost", Lost(), {}), 2, SHORT)
