@@ -216,24 +216,27 @@ def shown(value: Any) -> str:
     return brief(reprlib.repr(value))
 
 
+def _float(value: Any) -> float:
+    """A number, finite or not; null is a reading that failed."""
+    if isinstance(value, str | bytes | bool):
+        raise TypeError(f"{shown(value)} is no number")
+    return math.nan if value is None else float(value)
+
+
 def _number(key: str, value: Any, unit: str) -> float:
-    """A float, finite or not; null is a reading that failed."""
     try:
-        if not isinstance(value, str | bytes | bool):
-            return math.nan if value is None else float(value)
+        return _float(value)
     except (TypeError, ValueError, OverflowError):
-        pass
-    raise ValueError(f"{key} = {shown(value)}: expected a number [{unit}]")
+        raise ValueError(f"{key} = {shown(value)}: expected a number [{unit}]") from None
 
 
 def _numbers(key: str, values: Any, names: Sequence[str], more: Sequence[str] = ()) -> list[float]:
-    """Floats, finite or not, of the names, or also of more; null is a reading that failed."""
+    """Numbers of the names, or also of more."""
     try:
-        numbers = [math.nan if value is None else float(value) for value in values]
-        text = any(isinstance(value, str | bytes | bool) for value in values)
+        numbers = [_float(value) for value in values]
     except (TypeError, ValueError, OverflowError):
-        numbers, text = [], True
-    if text or len(numbers) not in {len(names), len(names) + len(more)}:
+        numbers = []
+    if len(numbers) not in {len(names), len(names) + len(more)}:
         also = f", or {len(names) + len(more)}, with {', '.join(more)}" if more else ""
         wanted = f"{len(names)} numbers, {', '.join(names)}{also}"
         raise ValueError(f"{key} = {shown(values)}: expected {wanted}")
