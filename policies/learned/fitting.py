@@ -14,6 +14,9 @@ from slipgym.envs.arguments import DEFAULT_ESTIMATOR, friction_part
 from slipgym.envs.observation import columns
 from slipgym.tasks import find
 
+_DECISIVE = "sensors", "friction_source", "action_mode"
+"""Arguments of an environment on which its columns depend most."""
+
 
 def layout(trained: Environment) -> tuple[str, ...]:
     """Names of the columns that the environment of a policy has in this version of slipgym, in order.
@@ -69,7 +72,9 @@ def check_environment(trained: Environment, env: Any) -> None:
     ):
         difference = first_difference(ours, [column_of(column) for column in theirs])
         if difference:
-            raise ValueError(f"the policy was trained for another {what}: {difference}")
+            given = [f"{name}={trained.arguments[name]!r}" for name in _DECISIVE if name in trained.arguments]
+            trained_with = f"; it was trained with {', '.join(given)}" if given else ""
+            raise ValueError(f"the policy was trained for another {what}: {difference}{trained_with}")
     space = inner.observation_space
     width = getattr(space, "spaces", {"policy": space})["policy"].shape[-1]
     wanted = (trained.history + 1) * len(names)

@@ -130,6 +130,9 @@ def test_a_learned_policy_plays(policy_folder, tmp_path):
     assert not outcome.dropped
     with pytest.raises(ValueError, match="trained for another observation"):
         watch("LinearSlip", str(folder), film, progress=False)
+    needed = r"another observation: .*; it was trained with sensors='lab', friction_source='none'"
+    with pytest.raises(ValueError, match=needed):
+        watch("Hold", "hold_lab", film, progress=False)
 
 
 def test_load_knows_the_controllers_too():
