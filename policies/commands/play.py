@@ -63,6 +63,11 @@ def main(
     with usage_errors(ValueError, OSError, RuntimeError, ModuleNotFoundError):
         options = parse_settings(option or (), "--option")
         if viewer:
+            if (episodes, speed) != (1, 1.0):
+                raise ValueError(
+                    "--viewer plays one episode after the other, at the speed of its menu: leave out "
+                    "--episodes and --speed"
+                )
             from policies.play.viewer import open_viewer
 
             outcomes = _shown(open_viewer(task, policy, video, seed, options, port, **keywords))

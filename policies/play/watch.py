@@ -93,7 +93,7 @@ class Keyboard:
 
 def watch(
     task: str,
-    policy: str | Policy | None = None,
+    policy: str | os.PathLike[str] | Policy | None = None,
     video: str | os.PathLike[str] | None = None,
     episodes: int = 1,
     seed: int = 0,
@@ -170,7 +170,7 @@ def watch(
     return outcomes
 
 
-def environment(env_id: str, name: str | Policy, policy: Any, keywords: Mapping[str, Any]) -> Any:
+def environment(env_id: str, name: object, policy: Any, keywords: Mapping[str, Any]) -> Any:
     """Makes the environment that a policy of some name, or a class of policies, acts in.
 
     Raises:
@@ -223,8 +223,10 @@ def _episode(
     return Outcome.of(seed, info, reward)
 
 
-def _policy(name: str | Policy) -> Policy:
+def _policy(name: str | os.PathLike[str] | Policy) -> Policy:
     """A policy by its name, or from where it was saved; or as it is."""
+    if isinstance(name, os.PathLike):
+        return policies.load(name)
     if not isinstance(name, str):
         return name
     if name in policies.names() or is_reference(name) or Path(name).exists() or os.sep in name:

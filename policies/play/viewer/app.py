@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 import os
+import socket
 import time
 from collections.abc import Callable, Mapping
 from importlib import import_module
@@ -19,6 +20,7 @@ from policies.play.viewer.guard import guard
 from policies.play.viewer.plots import Plots
 from policies.play.viewer.scene import Scene
 from policies.play.viewer.session import Refused, Session
+from policies.play.watch import environment
 from slipgym.atomic_io import check_file
 from slipgym.tasks import Task
 
@@ -49,7 +51,7 @@ class Viewer:
         self.scene = Scene(self.server.scene, self.server.initial_camera)
         gui.main_panel.dock_left()
         gui.main_panel.set_width(300)
-        names = dict.fromkeys([session.policy, *policies_for(session.task)])
+        names = dict.fromkeys([session.policy, *policies_for(session.task, session.keywords)])
         self.controls = Controls(gui, session, [*names], lambda wanted: setattr(self, "_wanted", wanted))
         panel = gui.add_panel()
         with panel.add_tab("plots"):
@@ -158,21 +160,26 @@ def _viser() -> Any:
         raise ModuleNotFoundError(MISSING) from error
 
 
-def policies_for(task: Task) -> list[str]:
-    """Names of the policies for a task: its controllers, and the learned ones trained in it."""
+def policies_for(task: Task, keywords: Mapping[str, Any]) -> list[str]:
+    """Names of the task's controllers and learned policies that can act in such an environment."""
 
     def fits(name: str) -> bool:
-        if policies.is_controller(name):
-            return controllers.find(name).task in (None, task.name)
         policy = policies.load(name)
-        return isinstance(policy, LearnedPolicy) and policy.description.environment.id == task.id
+        if isinstance(policy, LearnedPolicy):
+            meant = policy.description.environment.id == task.id
+        else:
+            meant = controllers.find(name).task in (None, task.name)
+        try:
+            return meant and environment(task.id, name, policy, keywords).close() is None
+        except ValueError:
+            return False
 
     return [*filter(fits, policies.names())]
 
 
 def open_viewer(
     task: str,
-    policy: str | None = None,
+    policy: str | os.PathLike[str] | None = None,
     video: str | os.PathLike[str] | None = None,
     seed: int = 0,
     options: Mapping[str, Any] | None = None,
@@ -184,7 +191,8 @@ def open_viewer(
 
     Args:
         task: As `slipgym.tasks.find` takes it.
-        policy: A name of `policies.names()` or the folder of a learned policy; None for the task's own.
+        policy: A name of `policies.names()`, "module:class" or the folder of a learned policy; None for the
+            task's own.
         video: MP4 or GIF for recordings; None: slipgym_<task>.mp4 in the working directory.
         seed: Of the first episode; the others' follow.
         options: Of every reset.
@@ -197,9 +205,14 @@ def open_viewer(
         RuntimeError: This version of viser does not let pages be checked.
         ValueError: A value is unknown or not allowed.
         FileNotFoundError: There is no policy at the path.
-        OSError: The video cannot be written.
+        OSError: The video cannot be written, or the host is no address of this machine.
     """
     _viser()
+    if not 0 <= port <= 65535:
+        raise ValueError(f"port = {port!r} must lie in 0 to 65535")
+    family, *_, address = socket.getaddrinfo(host, 0, type=socket.SOCK_STREAM)[0]
+    with socket.socket(family) as attempt:
+        attempt.bind(address)  # viser would try for ever
     if video is not None:
         check_file(Path(video))
     session = Session(task, policy, seed, options, **keywords)

@@ -23,6 +23,8 @@ LIVE = ("grip_force", "mu_c", "mass")
 """Values [N per finger, -, kg] that act from the next control step on, and stay set in later episodes."""
 NEXT_EPISODE = ("policy", "latency")
 """Values that begin with the next episode: a policy's name, the latency of the slip sensors [samples]."""
+_HELD = {"mu_c": interventions.set_friction, "mass": interventions.set_mass}
+"""How a value is set in an episode, in place of a change that the episode would make itself."""
 _GRIPS = "grip_force", "force_increment", "ln_grip_force"
 """Components of an action that command the grip; each action mode has one."""
 _LONGEST = 0.1  # [s] of simulation that one call makes up for
@@ -47,6 +49,7 @@ class Session:
         policy: Name of the policy that acts.
         seed: Of the episode.
         outcome: How the episode ended; None while it runs.
+        keywords: Of the environment.
         failed: Whether an error ended the episode; `restart` begins the next one.
         finished: How the episodes so far ended, in their order.
     """
@@ -54,20 +57,20 @@ class Session:
     def __init__(
         self,
         task: str,
-        policy: str | None = None,
+        policy: str | os.PathLike[str] | None = None,
         seed: int = 0,
         options: Mapping[str, Any] | None = None,
         **keywords: Any,
     ) -> None:
         self.task = find(task)
         self.seed = seed - 1
-        self.policy = policy or own_policy(task)
+        self.policy = os.fspath(policy or own_policy(task))
         self.values: dict[str, Any] = {}
         self.pending: set[str] = set()
         self.finished: list[Outcome] = []
         self.env: Any = None
         self.failed = False
-        self._options, self._keywords = dict(options or {}), keywords
+        self._options, self.keywords = dict(options or {}), keywords
         self._changes: SimpleQueue[Callable[[], None]] = SimpleQueue()
         self._ratio = 1.0
         self._make()
@@ -129,6 +132,8 @@ class Session:
         if "mu_c" in self.values:
             options["mu_c"], options["mu_s"] = self.values["mu_c"], self._ratio * self.values["mu_c"]
         self._observation, self.info = self.env.reset(seed=self.seed, options=options)
+        for name in self.values.keys() & _HELD.keys():
+            _HELD[name](self._episode, self.values[name])
         self._memory, self.outcome, self._reward, self._left = None, None, 0.0, 0.0
         self._ratio = float(self._episode["mu_s"] / self._episode["mu_c"])
         self.history = History(self.env.simulation, 0, self.task.motion)
@@ -160,10 +165,8 @@ class Session:
             if name == "policy":
                 if not isinstance(value, str | os.PathLike):
                     raise ValueError(f"policy = {value!r} must be a name or a path")
-            elif name == "mu_c":
-                interventions.set_friction(self._episode, value)
-            elif name == "mass":
-                interventions.set_mass(self._episode, value)
+            elif name in _HELD:
+                _HELD[name](self._episode, value)
             elif name == "grip_force":
                 interventions.checked(name, value)
             self.values[name] = value
@@ -191,10 +194,10 @@ class Session:
 
     def _make(self) -> None:
         """Make policy and environment from the values that are set; on an error the old ones stay."""
-        name = self.values.get("policy", self.policy)
+        name = os.fspath(self.values.get("policy", self.policy))
         try:
             policy = policies.load(name)
-            keywords = {**policies.modes(policy), **self._keywords}
+            keywords = {**policies.modes(policy), **self.keywords}
             if "latency" in self.values:
                 given = keywords.get("config")
                 overrides = {"sensors": {"slip": {"latency_samples": self.values["latency"]}}}
