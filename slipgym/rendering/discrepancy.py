@@ -50,7 +50,7 @@ def discrepancies(simulation: Simulation, row: int, history: History) -> list[Di
             found.append(Discrepancy(name, "not observed", NEEDS[name]))
         elif abs(error) > max(min(deviation, LARGE * true), VISIBLE * true):
             size = f"{100.0 * abs(error) / true:.0f} % {'above' if error > 0.0 else 'below'} the truth"
-            states = f"; states ± {100.0 * deviation / value:.0f} %" if deviation else ""
+            states = f"; states ± {100.0 * deviation / true:.0f} %" if deviation else ""
             within = abs(error) <= deviation
             found.append(Discrepancy(name, size + states, _reason(simulation, row, history, name, within)))
     if len(found) == 2 and found[0][1:] == found[1][1:]:

@@ -52,7 +52,16 @@ def test_an_estimate_within_its_deviation_needs_no_words():
 
 def test_a_large_error_is_named_within_its_deviation():
     (off,) = found(Past(mu_c=0.5), mu_c=0.5, true=0.4, deviation=0.2)
-    assert off == ("mu_c", "25 % above the truth; states ± 40 %", "no more than it states")
+    assert off == ("mu_c", "25 % above the truth; states ± 50 %", "no more than it states")
+
+
+def test_error_and_deviation_are_over_the_truth_both():
+    (off,) = found(Past(mu_c=0.3), mu_c=0.3, true=0.4, deviation=0.09)
+    assert off == (
+        "mu_c",
+        "25 % below the truth; states ± 22 %",
+        "more than it states: errors of sensors or model",
+    )
 
 
 def test_a_value_without_data_says_which_motion_it_needs():
@@ -83,12 +92,12 @@ JUMP = np.where(np.arange(STEPS + 1) < 80, 0.5, 0.4)
 def test_each_reason(past, values, reason, monkeypatch):
     monkeypatch.setattr("slipgym.rendering.discrepancy.RECENT", 0.35)
     off = found(Past(**past), mu_c=0.5, true=0.4, **values)
-    states = 100 * values.get("deviation", 0.01) / 0.5
+    states = 100 * values.get("deviation", 0.01) / 0.4
     assert off == [Discrepancy("mu_c", f"25 % above the truth; states ± {states:.0f} %", reason)]
 
 
 def test_the_same_words_for_both_are_said_once():
-    expected = Discrepancy("mu_c, mu_s", "25 % above the truth; states ± 8 %", "newest data 1.0 s old")
+    expected = Discrepancy("mu_c, mu_s", "25 % above the truth; states ± 10 %", "newest data 1.0 s old")
     past = Past(mu_c=0.5, mu_s=0.75, data_mu_c=0, data_mu_s=0)
     values = simulated(0.5, 0.4, deviation=0.04, sd_mu_s=0.06)
     values.estimated[0, [0, 6]] = 0.75, 0.06
