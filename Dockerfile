@@ -1,4 +1,4 @@
-# docker build -t slipgym . && docker run --rm slipgym play hold --engine planar
+# docker build -t slipgym . && docker run --rm slipgym evaluate --policy hold_scratch --trials 20 --set engine=planar
 FROM python:3.11-slim
 
 RUN useradd --create-home slipgym
