@@ -101,12 +101,19 @@ def one_of(names: Sequence[str]) -> Callable[[Any], str]:
     return take
 
 
+class Unfinished(ValueError):
+    """A number out of range, as the first digits are of one that is typed into the box of a slider."""
+
+
 def number(low: float, high: float, whole: bool = False) -> Callable[[Any], float]:
-    """Takes a number of a slider; raises ValueError for what is outside, NaN or no number."""
+    """Takes a number of a slider; raises `Unfinished` for one out of range, ValueError for anything else."""
 
     def take(value: Any) -> float:
-        if isinstance(value, bool) or not isinstance(value, int | float) or not low <= value <= high:
-            raise ValueError(f"must be a number from {low:g} to {high:g}")
+        words = f"must be a number from {low:g} to {high:g}"
+        if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) < math.inf:
+            raise ValueError(words)
+        if not low <= value <= high:
+            raise Unfinished(words)
         if whole and value != math.floor(value):
             raise ValueError(f"must be a whole number from {low:g} to {high:g}")
         return int(value) if whole else float(value)
@@ -125,7 +132,8 @@ class Offer:
     """A control of the page; viser has the handle, and messages name it by its label.
 
     `take` gives the value that is taken for one that was sent, see `number`; if that is not on offer,
-    `refuse` is called with a message.
+    `refuse` is called with a message. An `Unfinished` one is not taken: the page sends the next digits, or
+    the bound when the box is left.
     """
 
     def __init__(
@@ -157,6 +165,8 @@ class Offer:
         sent = self._handle.value
         try:
             self._value = self._take(sent)
+        except Unfinished:
+            return
         except ValueError as error:
             self._refuse(f"{self._label} = {repr(sent)[:_SHORT]} {error}")
             self._handle.value = self._value
