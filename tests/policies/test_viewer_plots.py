@@ -8,7 +8,7 @@ import pytest
 
 from policies.play.viewer import Session
 from policies.play.viewer.controls import status
-from policies.play.viewer.plots import Plots, SurfacePlot, boundary
+from policies.play.viewer.plots import Plots, SurfacePlot, _friction, boundary
 from policies.play.viewer.scene import Scene
 from slipgym.contact import EllipsoidContact
 
@@ -49,6 +49,16 @@ def test_the_plot_of_the_surface_draws_what_is_known(session):
     assert after.count("<polyline") == 3
     assert "nan" not in before + after
     assert after.count("<circle") == 2
+
+
+def test_a_band_has_no_width_before_there_are_data(session):
+    for _ in range(5):
+        session.advance(0.1)
+    _, low, high, _, _, mu_c, *_ = _friction(session.history)
+    unknown = np.isnan(mu_c)
+    assert 0 < unknown.sum() < len(mu_c)
+    assert np.array_equal(low[unknown], high[unknown])  # and not NaN, from which the page draws a wedge
+    assert (high[~unknown] > low[~unknown]).all()
 
 
 class Gui:

@@ -105,8 +105,12 @@ def _friction(history: History) -> tuple[np.ndarray, ...]:
     )
     bands = []
     for value, deviation in zip(values[:2], values[2:], strict=True):
-        reach = np.where(deviation < _KNOWN, deviation, np.nan)
-        bands += [np.maximum(value - reach, 0.0), value + reach]
+        known = deviation < _KNOWN
+        known &= np.isfinite(value)
+        # a page fills a band from the gap before it: where nothing is known, the band has no width
+        middle = np.where(known, value, value[known][0] if known.any() else 0.0)
+        reach = np.where(known, deviation, 0.0)
+        bands += [np.maximum(middle - reach, 0.0), middle + reach]
     zero = np.zeros_like(time)
     return time, *bands, *values[:2], true_c, true_s, zero, zero + 1.2 * true_s.max()
 
