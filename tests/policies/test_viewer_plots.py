@@ -1,5 +1,6 @@
 """The plots of the viewer without a browser: limit surface, why an estimate is off."""
 
+import re
 from contextlib import nullcontext
 from types import SimpleNamespace
 
@@ -8,7 +9,7 @@ import pytest
 
 from policies.play.viewer import Session
 from policies.play.viewer.controls import status
-from policies.play.viewer.plots import Plots, SurfacePlot, _friction, boundary
+from policies.play.viewer.plots import WIDTH, Plots, SurfacePlot, _friction, boundary
 from policies.play.viewer.scene import Scene
 from slipgym.contact import EllipsoidContact
 
@@ -49,6 +50,17 @@ def test_the_plot_of_the_surface_draws_what_is_known(session):
     assert after.count("<polyline") == 3
     assert "nan" not in before + after
     assert after.count("<circle") == 2
+
+
+def test_the_axes_of_the_surface_hold_the_estimated_one(session):
+    for _ in range(5):
+        session.advance(0.1)
+    session.env.simulation.estimated[0, 1:3] *= 3.0  # mu_c and r far above the truth
+    drawn = SurfacePlot().draw(session.env.simulation, session.info)
+    points = re.findall(r'<polyline points="([^"]*)"', drawn)[2].split()
+    x, y = np.array([point.split(",") for point in points], dtype=float).T
+    assert x.max() <= WIDTH
+    assert y.min() >= 0.0
 
 
 def test_a_band_has_no_width_before_there_are_data(session):

@@ -181,12 +181,12 @@ class SurfacePlot:
         coulomb = boundary(truth[:, 1], normal, truth[:, 2])
         _, mu_c, r, _, confidence = simulation.estimated[0, :5].tolist()
         deviation = float(simulation.estimated[0, 7])
-        self._grow(static)
         grey = "var(--truth)"
+        values = np.maximum([mu_c - deviation, mu_c, mu_c + deviation], 0.0)
+        low, middle, high = (boundary(np.full(2, mu), normal, np.full(2, r)) for mu in values)
+        self._grow(np.concatenate([static, middle]) if confidence > 0.0 else static)
         shapes = [self._path(static, grey, "4 3", 1.2), self._path(coulomb, grey, "", 1.8)]
         if confidence > 0.0:
-            values = np.maximum([mu_c - deviation, mu_c, mu_c + deviation], 0.0)
-            low, middle, high = (boundary(np.full(2, mu), normal, np.full(2, r)) for mu in values)
             if deviation < 1.0:
                 around = self._points(np.concatenate([low, high[::-1]]))
                 shapes.insert(0, f'<polygon points="{around}" fill="#D55E00" fill-opacity="0.22"/>')
