@@ -9,7 +9,7 @@ import pytest
 
 from policies.play.viewer import Session
 from policies.play.viewer.controls import status
-from policies.play.viewer.plots import WIDTH, Plots, SurfacePlot, _friction, boundary
+from policies.play.viewer.plots import WIDTH, Plots, SurfacePlot, _friction, _ticks, boundary
 from policies.play.viewer.scene import Scene
 from slipgym.contact import EllipsoidContact
 
@@ -61,6 +61,13 @@ def test_the_axes_of_the_surface_hold_the_estimated_one(session):
     x, y = np.array([point.split(",") for point in points], dtype=float).T
     assert x.max() <= WIDTH
     assert y.min() >= 0.0
+
+
+def test_every_axis_of_the_surface_has_a_number_besides_zero():
+    for high in np.geomspace(0.2, 2000.0, 200):
+        for ticks in (_ticks(-high, high), _ticks(0.0, high)):
+            assert 2 <= len(ticks) <= 5
+            assert 0.0 < ticks[-1] <= high
 
 
 def test_a_band_has_no_width_before_there_are_data(session):

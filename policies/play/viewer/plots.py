@@ -241,6 +241,6 @@ class SurfacePlot:
 
 
 def _ticks(low: float, high: float) -> list[float]:
-    """Round numbers between two limits, at most five of them."""
-    step = spacing(high - low)
+    """Round numbers between two limits, at most five of them, and one above 0."""
+    step = next(step for step in (spacing(high - low), spacing(high)) if step <= high)
     return [step * k for k in range(math.ceil(low / step), math.floor(high / step) + 1)]
