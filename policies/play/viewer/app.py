@@ -169,10 +169,13 @@ def policies_for(task: Task, keywords: Mapping[str, Any]) -> list[str]:
             meant = policy.description.environment.id == task.id
         else:
             meant = controllers.find(name).task in (None, task.name)
+        if not meant:
+            return False
         try:
-            return meant and environment(task.id, name, policy, keywords).close() is None
+            environment(task.id, name, policy, keywords).close()
         except ValueError:
             return False
+        return True
 
     return [*filter(fits, policies.names())]
 
