@@ -1,4 +1,4 @@
-"""Steps an environment with a policy until the episode ends."""
+"""Makes the environment that a policy is for, and steps it until the episode ends."""
 
 from __future__ import annotations
 
@@ -9,9 +9,37 @@ from typing import Any, NamedTuple
 import gymnasium as gym
 import numpy as np
 
+from estimator.reference import is_reference
 from estimator.suggestions import brief
 from policies.learned import LearnedPolicy
-from policies.registry import Policy
+from policies.registry import Policy, modes
+
+
+def own_arguments(policy: Any, env_id: str, changes: Mapping[str, Any]) -> dict[str, Any]:
+    """Keyword arguments of the environment that a policy is for, with changes in their place.
+
+    Those of a learned policy are those of its training, if that was in this environment; of any other one,
+    what it needs to act.
+
+    Raises:
+        ValueError: The training had an estimator that has to be imported, and the changes have none.
+    """
+    own = modes(policy)
+    if isinstance(policy, LearnedPolicy) and policy.description.environment.id == env_id:
+        own = dict(policy.description.environment.arguments)
+    if "estimator" not in changes:
+        _check_estimator(own.get("estimator"))
+    return {**own, **changes}
+
+
+def _check_estimator(choice: Any) -> None:
+    """Refuse what a file has to be imported for: only who runs it may ask for that."""
+    name = choice.get("name") if isinstance(choice, Mapping) else choice
+    if is_reference(name):
+        raise ValueError(
+            f"the estimator {name!r} of its policy.json is not imported unasked; give an estimator as an "
+            "argument of the environment"
+        )
 
 
 @contextmanager

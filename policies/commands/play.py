@@ -5,8 +5,7 @@ from typing import Annotated, Any
 
 import typer
 
-from estimator import DEFAULT
-from policies.commands.several import TASK_HELP, usage_errors
+from policies.commands.several import TASK_HELP, environment_arguments, taking_several, usage_errors
 
 EPILOG = """
 Examples:\n
@@ -15,6 +14,8 @@ Examples:\n
   slipgym play linear_slip --policy keyboard --material wood --speed 0.5
   slipgym play linear_slip --policy linear_slip --video slide.mp4 --option distance=0.02
   slipgym play hold --policy constant_force --video hold.gif --episodes 2 --speed 2
+  slipgym play carry --policy carry_lab --video carry.mp4
+  slipgym play hold --set level=hard randomization=train
   slipgym play carry --viewer --engine planar
 \n
 In a window, --policy keyboard leaves the grip force to you: up grips harder, down more loosely; Escape ends.
@@ -24,7 +25,7 @@ A window needs pygame (pip install 'slipgym[window]'). docs/rendering.md explain
 app = typer.Typer(add_completion=False, rich_markup_mode=None, pretty_exceptions_enable=False)
 
 
-@app.command(epilog=EPILOG)
+@app.command(epilog=EPILOG, cls=taking_several("--set"))
 def main(
     task: Annotated[str, typer.Argument(help=TASK_HELP)],
     policy: Annotated[
@@ -34,13 +35,17 @@ def main(
     episodes: Annotated[int, typer.Option(help="How many.")] = 1,
     seed: Annotated[int, typer.Option(min=0, help="Seed of the first episode.")] = 0,
     speed: Annotated[float, typer.Option(help="Seconds of simulation per second of watching.")] = 1.0,
-    material: Annotated[str, typer.Option(help="Name of a material, or random.")] = "random",
-    friction_source: Annotated[str, typer.Option(help="estimated, true, nominal or none.")] = "estimated",
-    estimator: Annotated[str, typer.Option(help="A name of estimator.names(), or none.")] = DEFAULT,
+    material: Annotated[str | None, typer.Option(help="Name of a material, or random.")] = None,
+    friction_source: Annotated[str | None, typer.Option(help="estimated, true, nominal or none.")] = None,
+    estimator: Annotated[str | None, typer.Option(help="A name of estimator.names(), or none.")] = None,
     sensors: Annotated[
-        str, typer.Option(help="ideal, realistic, lab, markers, wrist or motor.")
-    ] = "realistic",
-    engine: Annotated[str, typer.Option(help="auto, bullet or planar.")] = "auto",
+        str | None, typer.Option(help="ideal, realistic, lab, markers, wrist or motor.")
+    ] = None,
+    engine: Annotated[str | None, typer.Option(help="auto, bullet or planar.")] = None,
+    set_: Annotated[
+        list[str] | None,
+        typer.Option("--set", metavar="NAME=VALUE", help="Further arguments of the environment: level=hard."),
+    ] = None,
     viewer: Annotated[
         bool, typer.Option("--viewer", help="Show it in a browser, with sliders; --video is for recordings.")
     ] = False,
@@ -49,19 +54,27 @@ def main(
         list[str] | None, typer.Option(metavar="NAME=VALUE", help="Option of the episode; repeatable.")
     ] = None,
 ) -> None:
-    """Play a task and show it; prints how each episode went."""
+    """Play a task and show it; prints how each episode went.
+
+    A learned policy acts in the environment of its training, with the arguments that are given in place of
+    its own.
+    """
     from estimator.records import parse_settings
     from policies.play import watch
 
-    keywords: dict[str, Any] = {
+    given = {
         "material": material,
         "friction_source": friction_source,
-        "estimator": None if estimator == "none" else estimator,
+        "estimator": estimator,
         "sensors": sensors,
         "engine": engine,
     }
     with usage_errors(ValueError, OSError, RuntimeError, ModuleNotFoundError):
         options = parse_settings(option or (), "--option")
+        keywords: dict[str, Any] = {name: value for name, value in given.items() if value is not None}
+        if estimator == "none":
+            keywords["estimator"] = None
+        keywords |= environment_arguments(set_ or ())
         if viewer:
             if (episodes, speed) != (1, 1.0):
                 raise ValueError(

@@ -12,10 +12,9 @@ import gymnasium as gym
 from tqdm import tqdm
 
 import policies
-from estimator.reference import is_reference
 from policies.learned import LearnedPolicy
 from policies.registry import Policy
-from policies.stepping import environment_for, steps
+from policies.stepping import environment_for, own_arguments, steps
 from policies.training import seeds
 from slipgym.tasks import find
 
@@ -63,10 +62,8 @@ def opened(
     if task is not None:
         find(task)  # first of all: one of your own registers itself
     policy = policies.load(which)
-    env_id, arguments = environment_of(os.fspath(which), policy, task)
-    if "estimator" not in (changes or {}):
-        _check_estimator(arguments.get("estimator"))
-    arguments = {**arguments, **(changes or {})}
+    env_id, _ = environment_of(os.fspath(which), policy, task)
+    arguments = own_arguments(policy, env_id, changes or {})
     policies.check_estimates(os.fspath(which), policy, arguments)
     with environment_for(policy, env_id, **arguments) as env:
         yield policy, env
@@ -115,16 +112,6 @@ def outcome(which: str, found: Sequence[Outcome]) -> str:
     return (
         f"{which}: solved {solved} of {n}, dropped {dropped}; means: reward {reward:.2f}, time {time:.2f} s"
     )
-
-
-def _check_estimator(choice: Any) -> None:
-    """Refuse what a file has to be imported for: only who runs it may ask for that."""
-    name = choice.get("name") if isinstance(choice, Mapping) else choice
-    if is_reference(name):
-        raise ValueError(
-            f"the estimator {name!r} of its policy.json is not imported unasked; give an estimator as an "
-            "argument of the environment"
-        )
 
 
 class Stored(NamedTuple):

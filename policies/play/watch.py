@@ -19,7 +19,7 @@ from estimator.reference import is_reference
 from policies.learned import LearnedPolicy
 from policies.play.video import Video
 from policies.registry import Policy
-from policies.stepping import steps
+from policies.stepping import own_arguments, steps
 from policies.task_names import own_policy
 from slipgym.atomic_io import check_file
 from slipgym.config import Config
@@ -173,10 +173,12 @@ def watch(
 def environment(env_id: str, name: object, policy: Any, keywords: Mapping[str, Any]) -> Any:
     """Makes the environment that a policy of some name, or a class of policies, acts in.
 
+    That of a learned policy is the one of its training, with the keywords in place of its arguments.
+
     Raises:
         ValueError: A keyword is not allowed, or the policy does not fit.
     """
-    keywords = {**policies.modes(policy), **keywords}
+    keywords = own_arguments(policy, env_id, keywords)
     policies.check_estimates(name, policy, keywords)
     env_id = f"slipgym:{env_id}"
     env: Any = gym.make(env_id, render_mode="rgb_array", disable_env_checker=True, **keywords).unwrapped

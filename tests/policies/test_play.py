@@ -5,6 +5,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import gymnasium as gym
 import numpy as np
 import pytest
 from PIL import Image
@@ -179,3 +180,30 @@ def test_the_help_names_all_presets_of_sensors():
     help = next(each.help for each in get_command(app).params if "--sensors" in each.opts)
     named = set(help.rstrip(".").replace(" or ", ", ").split(", "))
     assert named == {each.stem for each in (ROOT / "configs" / "sensors").glob("*.yaml")}
+
+
+@pytest.mark.parametrize(
+    ("words", "arguments"),
+    [
+        (["--policy", "hold_lab"], {"level": "hard", "sensors": "lab", "estimator": None}),
+        (["--policy", "hold_lab", "--set", "level=easy"], {"level": "easy", "sensors": "lab"}),
+        (["--set", "level=hard", "randomization=train"], {"level": "hard", "randomization": "train"}),
+        (
+            ["--estimator", "none", "--friction-source", "true"],
+            {"estimator": None, "friction_source": "true"},
+        ),
+    ],
+)
+def test_arguments_of_the_environment(tmp_path, monkeypatch, words, arguments):
+    """A learned policy has those of its training, where no others are given."""
+    made, make = {}, gym.make
+
+    def remember(env_id, **keywords):
+        made.update(keywords)
+        return make(env_id, **keywords)
+
+    monkeypatch.setattr(gym, "make", remember)
+    short = "--option", "duration=0.05", "--engine", "planar", "--video", str(tmp_path / "film.gif")
+    done = CliRunner().invoke(app, ["hold", *words, *short])
+    assert done.exit_code == 0, done.output
+    assert {name: made[name] for name in arguments} == arguments

@@ -33,10 +33,22 @@ def test_what_is_set_by_hand_stays_in_episodes_that_would_change_it():
 
 
 def test_policies_on_offer_can_act_in_the_environment():
-    given = {"engine": "planar"}
-    assert not {"hold_lab", "hold_memory"} & set(policies_for(find("hold"), given))
-    assert "hold_memory" in policies_for(find("hold"), {**given, "friction_source": "none"})
-    assert "hold" not in policies_for(find("hold"), {**given, "estimator": None})
+    hold, given, untold = find("hold"), {"engine": "planar"}, {"hold_lab", "hold_memory"}
+    assert untold | {"hold", "hold_scratch"} <= set(policies_for(hold, given))
+    assert not untold & set(policies_for(hold, {**given, "friction_source": "true"}))
+    assert "hold" not in policies_for(hold, {**given, "estimator": None})
+
+
+def test_a_policy_in_mid_session_acts_in_the_environment_of_its_training():
+    session = Session("hold", engine="planar", options={"duration": 0.1})
+    session.submit("latency", 3)
+    session.submit("policy", "hold_lab")
+    session.advance(DT)
+    session.restart()
+    assert not session.env.simulation.estimating
+    slip = session.env.config.sensors.slip
+    assert (slip.latency_samples, slip.scale_error) == (3, 0.05)
+    session.close()
 
 
 def test_a_policy_is_found_by_a_path_object(tmp_path):

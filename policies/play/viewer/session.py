@@ -13,9 +13,10 @@ import numpy as np
 import policies
 from policies.play.viewer import interventions
 from policies.play.watch import Outcome, environment
+from policies.stepping import own_arguments
 from policies.task_names import own_policy
 from slipgym.config.errors import unknown
-from slipgym.config.load import merge, read_overrides
+from slipgym.config.load import load_randomization, merge, read_overrides
 from slipgym.rendering.history import History
 from slipgym.tasks import find
 
@@ -197,11 +198,14 @@ class Session:
         name = os.fspath(self.values.get("policy", self.policy))
         try:
             policy = policies.load(name)
-            keywords = {**policies.modes(policy), **self.keywords}
+            keywords = own_arguments(policy, self.task.id, self.keywords)
             if "latency" in self.values:
                 given = keywords.get("config")
                 overrides = {"sensors": {"slip": {"latency_samples": self.values["latency"]}}}
                 keywords["config"] = merge({} if given is None else read_overrides(given)[1], overrides)
+                drawn = load_randomization(keywords.get("randomization", "none")).of(self.task.key)
+                ranges = drawn.model_dump(mode="json", exclude_defaults=True)
+                keywords["randomization"] = {**ranges, "slip_latency": None}
             env = environment(self.task.id, name, policy, keywords)
         except Exception:
             for each in self.pending:
