@@ -6,7 +6,6 @@ from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING, Annotated, TypeAlias
 
 import typer
-from tqdm import tqdm
 
 from policies.commands.several import taking_several
 
@@ -49,6 +48,8 @@ def accept(experiments: Sequence[Callable[[], Iterable[Figure]]], only: Sequence
     Raises:
         typer.BadParameter: A name in `only` is none of an experiment.
     """
+    from tqdm import tqdm
+
     from estimator.suggestions import unknown
 
     known = {experiment.__name__: experiment for experiment in experiments}

@@ -35,6 +35,23 @@ def test_every_command_explains_itself(name):
     assert f"Usage: slipgym {name}" in done.output
 
 
+def test_every_command_explains_itself_without_other_extras():
+    """With what the extra "cli" installs."""
+    code = """if True:
+        import sys
+        for name in ("tqdm", "scipy", "joblib", "pyarrow", "imageio_ffmpeg", "moviepy", "torch", "pybullet"):
+            sys.modules[name] = None
+        from policies.commands import front
+        for name in front.COMMANDS:
+            try:
+                front.main([name, "--help"])
+            except SystemExit as done:
+                assert not done.code, name
+        """
+    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr[-2000:]
+
+
 def test_every_command_is_a_script_of_the_same_name():
     commands = {path.stem.replace("_", "-") for path in (ROOT / "scripts").glob("*.py")}
     assert {*front.COMMANDS} - commands == {"demo", "warmup"}
