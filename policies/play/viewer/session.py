@@ -50,7 +50,7 @@ class Session:
         policy: Name of the policy that acts.
         seed: Of the episode.
         outcome: How the episode ended; None while it runs.
-        keywords: Of the environment.
+        keywords: Of the environment, in place of those that the policy has.
         failed: Whether an error ended the episode; `restart` begins the next one.
         finished: How the episodes so far ended, in their order.
     """
