@@ -80,14 +80,15 @@ def acceptance(name, sensors):
 @pytest.mark.parametrize("sensors", ["realistic", "ideal"])
 @pytest.mark.parametrize("name", ["linear_slip", "rotational_slip", "hinge", "planar_slip", "hold"])
 def test_acceptance_of_the_planar_engine(name, sensors):
-    """Hinge with ideal sensors amplifies differences: PyBullet's steps matter more there than the engine."""
-    amplifies = (name, sensors) == ("hinge", "ideal")
+    """Hinge amplifies differences: PyBullet's steps matter more there than the engine."""
+    amplifies = name == "hinge"
     table = compare(*acceptance(name, sensors), progress=False, halving=amplifies)
     table = table.set_index("against PyBullet")
     closed, same = table.loc["planar, same controller"], table.loc["planar, same actions"]
     bounds = {"median [mm]": 0.2, "median [deg]": 0.2, "95 % [mm]": 0.5, "95 % [deg]": 0.5}
     if amplifies:
-        # half is no derived figure: in its 64 episodes the engines were 0.72 deg apart, the steps 3.0 deg
+        # half is no derived figure: with ideal sensors the engines were 0.72 deg apart and the steps 3.0 deg,
+        # with realistic ones 0.97 and 2.4 deg
         bounds["95 % [deg]"] = 0.5 * table.loc["PyBullet halved, same actions", "95 % [deg]"]
     assert {line: same[line] for line, bound in bounds.items() if not same[line] < bound} == {}
     assert abs(closed["success [%]"] - closed["success, PyBullet [%]"]) <= 2.0
