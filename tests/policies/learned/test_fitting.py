@@ -132,7 +132,7 @@ def test_a_learned_policy_plays(policy_folder, tmp_path):
         watch("LinearSlip", str(folder), film, progress=False)
     needed = r"another observation: .*; it was trained with sensors='lab', friction_source='none'"
     with pytest.raises(ValueError, match=needed):
-        watch("Hold", "hold_lab", film, progress=False)
+        watch("Hold", "hold_lab", film, progress=False, friction_source="true")
 
 
 def test_load_knows_the_controllers_too():
