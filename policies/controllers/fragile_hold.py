@@ -18,6 +18,7 @@ class FragileHoldGains(LiftingGains):
 
     confidence: Positive = Gain(0.01, "Confidence from which mu_s is taken as it is [-]")
     deviations: NonNegative = Gain(0.12, "Standard deviations by which mu_s is taken below its estimate [-]")
+    noise: NonNegative = Gain(0.05, "Fall of the load that is always noise [N]")
     place: Fraction = Gain(0.45, "Place of the grip between least and breaking force, logarithmic [-]")
 
 

@@ -30,10 +30,10 @@ class LiftingGains(Frozen):
     deviations: NonNegative = Gain(0.2, "Standard deviations by which mu_s is taken below its estimate [-]")
     least: NonNegative = Gain(0.8, "Least grip [N]")
     tare: Fraction = Gain(0.8, "Part of the time on the support in which the forces are zeroed [-]")
-    lead: NonNegative = Gain(0.05, "Time by which the grip leads a rising load [s]")
+    lead: NonNegative = Gain(0.03, "Time by which the grip leads a rising load [s]")
     smoothing: Fraction = Gain(0.8, "Weight of the old load in each control step while the wrist rests [-]")
     lightest: NonNegative = Gain(1.0, "Load per finger of the lightest object [N]")
-    fall: NonNegative = Gain(0.12, "Fall of the load that is a slip, over the load [-]")
+    fall: NonNegative = Gain(0.1, "Fall of the load that is a slip, over the load [-]")
     noise: NonNegative = Gain(0.08, "Fall of the load that is always noise [N]")
     speed: Positive = Gain(2e-3, "Scaled slip speed that is a slip [m/s]")
     catch: Positive = Gain(1.5, "Least factor by which the grip rises then [-]")
@@ -43,7 +43,7 @@ class LiftingGains(Frozen):
         0.04, "Deviation of load over grip before a slip, relative; 0: it does not count [-]"
     )
     sure: Positive = Gain(0.8, "Confidence up to which slips are caught [-]")
-    rest: NonNegative = Gain(5, "Control steps after a slip without another catch [-]")
+    rest: NonNegative = Gain(8, "Control steps after a slip without another catch [-]")
     decay: Fraction = Gain(0.97, "Fraction of the grip after a slip that is left a control step later [-]")
 
 
