@@ -20,8 +20,8 @@ class CarryGains(LiftingGains):
     """Gains of `CarryPolicy`."""
 
     margin: Positive = Gain(1.15, "Grip over the least for the planned load [-]")
-    lightest: NonNegative = Gain(0.7, "Load per finger for which a grip is ready that has to catch [N]")
-    catch: Positive = Gain(1.8, "Least factor by which the grip rises then [-]")
+    lightest: NonNegative = Gain(0.7, "Least load per finger that a grip is made for [N]")
+    catch: Positive = Gain(1.8, "Least factor by which the grip rises after a slip [-]")
     kick: Positive = Gain(3.0, "Command in the control step of a catch, over the grip wanted [-]")
     deviations: NonNegative = Gain(0.3, "Standard deviations by which mu_s is taken below its estimate [-]")
 

@@ -32,7 +32,7 @@ class LiftingGains(Frozen):
     tare: Fraction = Gain(0.8, "Part of the time on the support in which the forces are zeroed [-]")
     lead: NonNegative = Gain(0.03, "Time by which the grip leads a rising load [s]")
     smoothing: Fraction = Gain(0.8, "Weight of the old load in each control step while the wrist rests [-]")
-    lightest: NonNegative = Gain(1.0, "Load per finger of the lightest object [N]")
+    lightest: NonNegative = Gain(1.0, "Least load per finger that a grip is made for [N]")
     fall: NonNegative = Gain(0.1, "Fall of the load that is a slip, over the load [-]")
     noise: NonNegative = Gain(0.08, "Fall of the load that is always noise [N]")
     speed: Positive = Gain(2e-3, "Scaled slip speed that is a slip [m/s]")
