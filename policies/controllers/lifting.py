@@ -19,7 +19,7 @@ _STILL = 3
 """Control steps after which a wrist without velocity rests, and is not just between two moves."""
 
 _RISE = 6.0
-"""The lightest object is allowed for once this many times the load is its load."""
+"""A grip is made for `lightest` once this many times the load is more."""
 
 
 class LiftingGains(Frozen):
@@ -61,10 +61,10 @@ class LiftingPolicy(GainPolicy[L]):
     object slips, mu_c takes its place.
 
     Before the first slip mu_s is taken as `guess`, more than what may come. The object then slips while the
-    load is still small, which shows in the load at the next control step: the grip jumps to what the lightest
-    object needs at load / grip before the slip, for one control step to more, since the force follows late.
-    From then on load / grip before the slip counts for mu_s, and so does the estimate, each with the weight
-    of its variance. Without friction in the observation the former alone is a memory of slips.
+    load is still small, which shows in the load at the next control step: the grip jumps to what the load
+    `lightest` needs at load / grip before the slip, for one control step to more, since the force follows
+    late. From then on load / grip before the slip counts for mu_s, and so does the estimate, each with the
+    weight of its variance. Without friction in the observation the former alone is a memory of slips.
     """
 
     remembers_slips, needs_slip = True, False
