@@ -20,6 +20,7 @@ from tensordict import TensorDict
 from policies.training import policy_tensors, vector
 from policies.training.config import Training
 from policies.training.derived import coefficients
+from policies.training.memory import remembering
 from policies.training.mirror import Mirror
 from policies.training.state_checks import arrays, check_like, moments, set_moments, tensors
 
@@ -107,6 +108,9 @@ class PrivilegedPPO:
         with torch.no_grad():
             layers = [layer for layer in made.actor.mlp if isinstance(layer, torch.nn.Linear)]
             layers[-1].weight.mul_(_FIRST_OUTPUT)
+        if chosen.memory:
+            actor: Any = made.actor
+            remembering(actor.rnn.rnn)
         return made
 
     def get_env(self) -> Any:

@@ -12,6 +12,7 @@ from torch import nn
 from policies.learned.description import Column, Network, Normalisation
 from policies.learned.extract import array, places
 from policies.training.imitation.config import Imitation
+from policies.training.memory import remembering
 
 EPSILON = 1e-8
 """Added to the variance of an observation [unit^2]."""
@@ -21,8 +22,6 @@ FORCE = "grip_force"
 """Component of an action whose relative error counts."""
 LEAST = 0.1
 """Added to the distance of a force from its lower end before an error is divided by it [-]."""
-HORIZON = 300.0
-"""Longest memory of an LSTM layer before training [steps]."""
 OTHER = 0.3
 """What errors of other components are divided by [-]."""
 
@@ -36,7 +35,7 @@ class Student(nn.Module):
         super().__init__()
         self.mean, self.var = torch.from_numpy(mean.copy()), torch.from_numpy(var.copy())
         width = len(mean)
-        self.memory = _lstm(width, config.memory) if config.memory else None
+        self.memory = remembering(nn.LSTM(width, config.memory)) if config.memory else None
         width = config.memory or width
         sizes = [width, *config.layers, len(components)]
         self.dense = nn.ModuleList(nn.Linear(a, b) for a, b in pairwise(sizes))
@@ -70,19 +69,6 @@ class Student(nn.Module):
         state = self.state_dict()
         found = {ours: array(state[theirs]) for ours, theirs in places(state, "dense", "memory").items()}
         return {"observation.mean": array(self.mean), "observation.var": array(self.var), **found}
-
-
-def _lstm(width: int, size: int) -> nn.LSTM:
-    """An LSTM layer whose units remember from 1 to `HORIZON` steps at first.
-
-    By C. Tallec and Y. Ollivier, Can recurrent neural networks warp time?, ICLR 2018.
-    """
-    layer = nn.LSTM(width, size)
-    keeps = torch.log(1.0 + (HORIZON - 2.0) * torch.rand(size))
-    zeros = torch.zeros(2 * size)
-    layer.bias_ih_l0 = nn.Parameter(torch.zeros(4 * size))
-    layer.bias_hh_l0 = nn.Parameter(torch.cat([-keeps, keeps, zeros]))  # of input and forget gates
-    return layer
 
 
 def network_of(config: Imitation) -> Network:

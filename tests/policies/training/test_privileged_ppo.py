@@ -1,5 +1,7 @@
 """PPO of rsl-rl: what its actor sees, the policy that it leaves behind, the start from one, its stages."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -11,7 +13,10 @@ from policies.training.adapter import make_vec_env
 from policies.training.files import checked
 from policies.training.imitation.config import Imitation
 from policies.training.imitation.run import imitate
+from policies.training.privileged_ppo import PrivilegedPPO
 from slipgym.envs.observation import DEVIATION_COLUMNS
+
+torch = pytest.importorskip("torch")
 
 
 @pytest.fixture(scope="module", params=[0, 5])
@@ -188,6 +193,21 @@ def test_losses_and_what_training_solves_are_recorded(trained):
     events.Reload()
     wanted = {f"train/{name}" for name in ("value", "surrogate", "entropy", "solved", "stage")}
     assert wanted <= set(events.Tags()["scalars"])
+
+
+def test_a_new_actor_remembers_from_the_start(small):
+    """Its units hold what they know for up to 300 steps; with the biases of torch for about two."""
+    chosen = {"memory": 64, "net_arch": [8], "n_minibatches": 1}
+    config = small(algorithm="privileged_ppo", privileged_ppo=chosen)
+    actor: Any = PrivilegedPPO(config, 0).ppo.actor
+    layer = actor.rnn.rnn
+    with torch.no_grad():
+        bias = layer.bias_ih_l0 + layer.bias_hh_l0
+        written, kept, *_ = (torch.sigmoid(part) for part in bias.chunk(4))
+    steps = 1.0 / (1.0 - kept)
+    assert 1.0 < steps.min() < 50.0
+    assert 200.0 < steps.max() <= 300.0
+    torch.testing.assert_close(written, 1.0 - kept)
 
 
 def test_options_of_reset_vary_in_training(small, tmp_path):
