@@ -98,6 +98,7 @@ def _finish(
     best = _best(path, callback)
     with fits(f"{checkpoints.best(path)}: the checkpoint"):
         learners.set_parameters(model, best["learner"])
+    model.num_timesteps = best["row"]["steps"]
     export.write(model, best["learner"]["normalisation"], config, path, seed, _COMMAND.format(path.name))
     with styled():
         curve.plot({path.name: [callback.curve]}).savefig(path / "curve.png", dpi=STYLE.dpi)

@@ -73,6 +73,13 @@ def test_the_policy_of_a_run_acts_as_its_best_learner(trained):
     learner.get_env().close()
 
 
+def test_a_policy_says_how_many_steps_it_has_learned_from(trained):
+    """Those of its checkpoint, which may be fewer than the run's."""
+    _, path = trained
+    found = folder.result(path)
+    assert policies.load(path / "policy").description.origin.steps == found["best"]["steps"]
+
+
 def test_a_learner_starts_as_the_policy_that_it_is_given(trained):
     config, path = trained
     values = config.model_dump()
