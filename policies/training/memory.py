@@ -1,4 +1,4 @@
-"""How long an LSTM layer remembers before it has learned anything."""
+"""Sets how long an LSTM layer remembers before it has learned anything."""
 
 import torch
 from torch import nn
