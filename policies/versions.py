@@ -48,6 +48,17 @@ def stamped(output: str | os.PathLike[str], name: str) -> Path:
     return Path(output).expanduser().resolve() / f"{name}__{stamp}"
 
 
+def claimed(output: str | os.PathLike[str], name: str) -> Path:
+    """Makes such a folder, which no process that began in the same millisecond has made."""
+    while True:
+        path = stamped(output, name)
+        try:
+            path.mkdir(parents=True)
+        except FileExistsError:
+            continue
+        return path
+
+
 def write_origin(folder: Path, **documents: Any) -> None:
     """Writes plain values as YAML files of these names, such as the experiment, and the versions."""
     for name, values in documents.items():

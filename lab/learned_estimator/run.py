@@ -15,7 +15,7 @@ from lab.learned_estimator.config import Training
 from lab.learned_estimator.episodes import record
 from lab.learned_estimator.fit import Curve, fit
 from lab.learned_estimator.weights import Tensors, save
-from policies.versions import stamped, write_versions
+from policies.versions import claimed, write_versions
 from slipgym.atomic_io import new_file
 
 WEIGHTS = "gru.npz"
@@ -65,8 +65,7 @@ def train(
         FloatingPointError: The loss is not finite.
         OSError: The folder cannot be written; before anything is recorded.
     """
-    path, began = stamped(output, "gru"), time.monotonic()
-    path.mkdir(parents=True)
+    path, began = claimed(output, "gru"), time.monotonic()
     write_versions(path)
     settings = yaml.safe_dump(training.model_dump(mode="json"), sort_keys=False)
     (path / "training.yaml").write_text(f"# seed {seed}\n{settings}", encoding="utf-8")

@@ -16,7 +16,7 @@ from policies.training import seeds as numbers
 from policies.training.config import Training
 from policies.training.files import changed
 from policies.training.run import train
-from policies.versions import stamped
+from policies.versions import claimed
 from slipgym.atomic_io import check_folder
 from slipgym.tasks import find
 
@@ -93,7 +93,7 @@ def begin(config: Training, seeds: Sequence[int], sources: Sequence[str], output
 def lay_out(runs: Sequence[tuple[Training, int]], output: Path) -> Path:
     """Makes a study's folder in `output`, with one for each run of a task: its configuration and seed."""
     first = runs[0][0]
-    path = stamped(output, f"{find(first.task).key}__{first.algorithm}")
+    path = claimed(output, f"{find(first.task).key}__{first.algorithm}")
     for config, seed in runs:
         folder.begin(path / f"{config.environment.friction_source}__{seed}", config, seed)
     return path

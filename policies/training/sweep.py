@@ -16,7 +16,7 @@ from policies.training import files, folder
 from policies.training.config import Dimension, Training
 from policies.training.curve import Row
 from policies.training.run import train
-from policies.versions import stamped
+from policies.versions import claimed
 from slipgym import atomic_io
 from slipgym.tasks import find
 
@@ -35,8 +35,7 @@ def first(config: Training) -> Training:
 
 def begin(config: Training, output: Path) -> Path:
     """Makes the folder of a sweep."""
-    path = stamped(output, f"{find(config.task).key}__{config.algorithm}__sweep")
-    path.mkdir(parents=True)
+    path = claimed(output, f"{find(config.task).key}__{config.algorithm}__sweep")
     _study(path)
     return path
 

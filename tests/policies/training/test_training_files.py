@@ -1,3 +1,6 @@
+from datetime import datetime
+from types import SimpleNamespace
+
 import pytest
 import yaml
 
@@ -117,6 +120,17 @@ def test_resuming_takes_no_other_option(tmp_path):
         run_set.resumed(tmp_path, {"--seeds": None, "--budget": 3}, 1, "")
     with pytest.raises(FileNotFoundError, match="holds no training run"):
         run_set.resumed(tmp_path, {"--seeds": None}, 1, "")
+
+
+def test_studies_begun_in_the_same_millisecond_have_folders_of_their_own(small, tmp_path, monkeypatch):
+    from policies import versions
+    from policies.training import run_set
+
+    times = [datetime.fromtimestamp(0.001 * moment) for moment in (0, 0, 1)]
+    monkeypatch.setattr(versions, "datetime", SimpleNamespace(now=iter(times).__next__))
+    first, second = (run_set.lay_out([(small(), seed)], tmp_path) for seed in (0, 4))
+    assert [run.name for run in first.iterdir()] == ["estimated__0"]
+    assert [run.name for run in second.iterdir()] == ["estimated__4"]
 
 
 def test_a_file_of_a_randomization_is_kept_as_its_content(tmp_path):
