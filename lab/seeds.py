@@ -18,7 +18,7 @@ from policies.training.config import Training
 from slipgym.tasks import find
 
 PASSES = {
-    "carry_lab": ("carry_lab_start", "carry_lab", "carry_lab"),
+    "carry_lab": ("carry_lab_start", "carry_lab"),
     "hold_lab": ("hold_lab_start", "hold_lab", "hold_lab"),
 }
 """Configurations that a policy went through, each from the result of the one before; docs/from_nothing.md."""

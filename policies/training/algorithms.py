@@ -16,6 +16,8 @@ Layers = Annotated[
 ]
 """As wide and as many as the file of a policy holds."""
 Share = Annotated[float, Field(ge=0, le=1)]
+HORIZON = 300.0
+"""Longest memory of a unit of an LSTM before it has learned anything [steps]."""
 
 
 class _Shared(Frozen):
@@ -87,6 +89,9 @@ class PrivilegedPPO(Frozen):
     net_arch: Layers = Field(default=(64, 64), description="Units of the hidden layers [-]")
     activation: Literal["tanh", "relu", "elu"] = Field(default="tanh", description="Of the hidden layers [-]")
     memory: int = Field(default=0, ge=0, le=1024, description="Units of the actor's LSTM; 0: none [-]")
+    memory_horizon: float = Field(
+        default=HORIZON, ge=2.0, le=1e6, description="Longest memory of a unit of a new LSTM [steps]"
+    )
     mirrored: Annotated[tuple[str, ...], BeforeValidator(as_tuple)] = Field(
         default=(),
         description="Columns that change sign in a mirror: samples count twice, as they are and mirrored [-]",

@@ -110,7 +110,7 @@ class PrivilegedPPO:
             layers[-1].weight.mul_(_FIRST_OUTPUT)
         if chosen.memory:
             actor: Any = made.actor
-            remembering(actor.rnn.rnn)
+            remembering(actor.rnn.rnn, chosen.memory_horizon)
         return made
 
     def get_env(self) -> Any:
