@@ -21,7 +21,7 @@ PASSES = {
     "carry_lab": ("carry_lab_start", "carry_lab"),
     "hold_lab": ("hold_lab_start", "hold_lab", "hold_lab"),
 }
-"""Configurations that each seed goes through, each from the result of the one before; docs/from_nothing.md."""
+"""Configurations that a seed goes through, each from the result of the one before; docs/from_nothing.md."""
 
 
 class Trained(NamedTuple):
