@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from typing import Any, NamedTuple
 
 import gymnasium as gym
@@ -42,9 +42,8 @@ def _check_estimator(choice: Any) -> None:
         )
 
 
-@contextmanager
-def environment_for(policy: Policy, env_id: str, **arguments: Any) -> Iterator[gym.Env]:
-    """Makes an environment that a policy can act in, and closes it at the end of the `with` block.
+def make_for(policy: Any, env_id: str, **arguments: Any) -> gym.Env:
+    """Makes an environment that a policy, or a class of policies, can act in.
 
     Args:
         policy: Who acts.
@@ -58,9 +57,17 @@ def environment_for(policy: Policy, env_id: str, **arguments: Any) -> Iterator[g
     try:
         if isinstance(policy, LearnedPolicy):
             policy.check(env)
-        yield env
-    finally:
+    except BaseException:
         env.close()
+        raise
+    return env
+
+
+@contextmanager
+def environment_for(policy: Policy, env_id: str, **arguments: Any) -> Iterator[gym.Env]:
+    """Makes an environment as `make_for` does, and closes it at the end of the `with` block."""
+    with closing(make_for(policy, env_id, **arguments)) as env:
+        yield env
 
 
 class Step(NamedTuple):

@@ -10,16 +10,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import gymnasium as gym
 import numpy as np
 from tqdm import tqdm
 
 import policies
 from estimator.reference import is_reference
-from policies.learned import LearnedPolicy
 from policies.play.video import Video
 from policies.registry import Policy
-from policies.stepping import own_arguments, steps
+from policies.stepping import make_for, own_arguments, steps
 from policies.task_names import own_policy
 from slipgym.atomic_io import check_file
 from slipgym.config import Config
@@ -180,15 +178,7 @@ def environment(env_id: str, name: object, policy: Any, keywords: Mapping[str, A
     """
     keywords = own_arguments(policy, env_id, keywords)
     policies.check_estimates(name, policy, keywords)
-    env_id = f"slipgym:{env_id}"
-    env: Any = gym.make(env_id, render_mode="rgb_array", disable_env_checker=True, **keywords).unwrapped
-    try:
-        if isinstance(policy, LearnedPolicy):
-            policy.check(env)
-    except BaseException:
-        env.close()
-        raise
-    return env
+    return make_for(policy, env_id, render_mode="rgb_array", **keywords).unwrapped
 
 
 def _episode(

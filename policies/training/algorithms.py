@@ -104,9 +104,11 @@ class PrivilegedPPO(Frozen):
     curriculum: Curriculum = Field(default=Curriculum(), description="Easier stages that come first [-]")
 
     @model_validator(mode="after")
-    def _mirrors_no_memory(self) -> Self:
+    def _what_a_memory_has(self) -> Self:
         if self.mirrored and self.memory:
             raise ValueError("mirrored needs memory 0: rsl-rl mirrors no sequences")
+        if self.memory_horizon != HORIZON and not self.memory:
+            raise ValueError("memory_horizon needs a memory")
         return self
 
 

@@ -91,6 +91,7 @@ class Silent:
         ({"privileged_ppo.mirrored": ["f_z"]}, "mirrored: unknown column 'f_z'; did you mean 'f_y'"),
         ({"derived": {"both": {"f_x_1": 1.0, "f_y_1": 1.0}}}, "'both' combines mirrored and other columns"),
         ({"privileged_ppo.memory": 8}, "mirrored needs memory 0"),
+        ({"privileged_ppo.memory_horizon": 8}, "memory_horizon needs a memory"),
     ],
 )
 def test_refusals(config, changes, message):
