@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -17,15 +17,9 @@ from policies.training import curve, export, files, folder, run_set
 from policies.training.config import Training
 from slipgym.tasks import find
 
-PASSES = {
-    "carry_lab": ("carry_lab_start", "carry_lab"),
-    "hold_lab": ("hold_lab_start", "hold_lab", "hold_lab"),
-}
-"""Configurations that a seed goes through, each from the result of the one before; docs/from_nothing.md."""
-
 
 class Trained(NamedTuple):
-    """The policy of one seed; steps and seconds are of all its passes."""
+    """The policy of one seed, its steps and the seconds of the whole run."""
 
     policy: Path
     steps: int
@@ -37,42 +31,25 @@ def trained(name: str, seeds: Sequence[int], root: Path, jobs: int) -> dict[int,
 
     Args:
         name: Of a configuration that comes with slipgym.
-        seeds: Seeds of the trainings, in every pass.
+        seeds: Seeds of the trainings.
         root: Folder of the sets of runs.
         jobs: Runs at once.
     """
-    found: dict[int, Trained] = {}
-    for one in PASSES.get(name, (name,)):
-        found = _after(found, files.load(one), seeds, root, jobs)
-    return found
-
-
-def _after(
-    before: Mapping[int, Trained], config: Training, seeds: Sequence[int], root: Path, jobs: int
-) -> dict[int, Trained]:
-    """One pass of each seed, on from its policy before."""
-    wanted = dict.fromkeys(seeds, config)
-    for seed, start in before.items():
-        wanted[seed] = files.changed(config, {"privileged_ppo.start": str(start.policy.resolve())})
-    found = _finished(root, wanted)
+    config = files.load(name)
+    found = _finished(root, config)
     if missing := [seed for seed in seeds if seed not in found]:
-        run_set.train_all(run_set.lay_out([(wanted[seed], seed) for seed in missing], root), jobs)
-        found = _finished(root, wanted)
-    nothing = Trained(Path(), 0, 0.0)
-    return {seed: _sum(before.get(seed, nothing), found[seed]) for seed in seeds}
+        run_set.train_all(run_set.lay_out([(config, seed) for seed in missing], root), jobs)
+        found = _finished(root, config)
+    return {seed: found[seed] for seed in seeds}
 
 
-def _sum(before: Trained, last: Trained) -> Trained:
-    return Trained(last.policy, before.steps + last.steps, before.cpu_seconds + last.cpu_seconds)
-
-
-def _finished(root: Path, wanted: Mapping[int, Training]) -> dict[int, Trained]:
-    """Of the runs with just the configuration of their seed."""
+def _finished(root: Path, wanted: Training) -> dict[int, Trained]:
+    """Of the runs with just this configuration, by their seeds."""
     found = {}
     for order in sorted(root.glob("*/*/run.yaml")):
         config, seed = folder.order(order.parent)
         result = folder.result(order.parent)
-        if config == wanted.get(seed) and result is not None:
+        if config == wanted and result is not None:
             best = curve.best(folder.read_curve(order.parent), config.evaluation.episodes)
             found[seed] = Trained(order.parent / export.POLICY, best.steps, result["cpu_seconds"])
     return found

@@ -1,7 +1,6 @@
 """The table of learning from nothing with several seeds."""
 
 import shutil
-from pathlib import Path
 
 import pytest
 
@@ -50,38 +49,3 @@ def test_a_run_of_another_configuration_is_no_seed(finished, monkeypatch):
     monkeypatch.setattr(files, "load", lambda name: today.model_copy(update={"num_envs": 2}))
     with pytest.raises(AssertionError, match="is trained"):
         seeds.table([NAME], range(2), finished, 1, 40)
-
-
-@pytest.fixture
-def passed_twice(tmp_path, monkeypatch):
-    """A folder to which a training adds finished runs; the policy is of a second pass after the same."""
-    monkeypatch.setattr(seeds, "PASSES", {NAME: (NAME, NAME)})
-    begun = []
-
-    def train_all(path, jobs):
-        for run in folder.runs(path):
-            begun.append(folder.order(run))
-            shutil.copytree(pretrained.locate(NAME), run / POLICY)
-            folder.write_curve(run, [Row(0, 0.0, 0.0, 0.0, 0.0), Row(1_000_000, 0.9, 0.0, 0.0, 0.0)])
-            folder.write_result(run, {"cpu_seconds": 100.0})
-
-    monkeypatch.setattr(run_set, "train_all", train_all)
-    return tmp_path, begun
-
-
-def test_a_pass_goes_on_from_the_result_of_the_same_seed(passed_twice):
-    root, begun = passed_twice
-    found = seeds.trained(NAME, range(2), root, 1)
-    assert [config.privileged_ppo.start for config, _ in begun[:2]] == [None, None]
-    for config, seed in begun[2:]:
-        start = Path(config.privileged_ppo.start)
-        assert start.parent.name == f"true__{seed}"
-        assert start != found[seed].policy
-    assert (found[1].steps, found[1].cpu_seconds) == (2_000_000, 200.0)  # of both passes
-
-
-def test_passes_that_are_finished_are_found_again(passed_twice):
-    root, begun = passed_twice
-    first = seeds.trained(NAME, range(2), root, 1)
-    assert seeds.trained(NAME, range(2), root, 1) == first
-    assert len(begun) == 4
